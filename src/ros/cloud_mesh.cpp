@@ -10,22 +10,16 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <stdexcept>
 #include <utility>
 
 namespace spherical_param_ros {
 namespace {
 
 using spherical_param::Index;
+using spherical_param::InvalidInput;
 using spherical_param::Positions;
 using spherical_param::Result;
 using spherical_param::Surface;
-
-/// A cloud that cannot be used: the message is "cause; remedy".
-class BadCloud : public std::runtime_error {
-public:
-  using std::runtime_error::runtime_error;
-};
 
 std::size_t sizeOf(std::uint8_t datatype) {
   switch (datatype) {
@@ -45,40 +39,43 @@ const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std:
   return nullptr;
 }
 
-/// Checks that all records are where the sizes of the message say. \throw BadCloud
+/// Checks that all records are where the sizes of the message say. \throw InvalidInput
 void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
   if (points == 0)
-    throw BadCloud("the cloud is empty; publish clouds of at least 4 points");
+    throw InvalidInput("the cloud is empty; publish clouds of at least 4 points");
   if (max_points > 0 && points > max_points)
-    throw BadCloud("the cloud has " + std::to_string(points) + " points, more than max_points, " +
-                   std::to_string(max_points) + "; thin it out (VoxelGrid), or raise max_points");
+    throw InvalidInput("the cloud has " + std::to_string(points) +
+                       " points, more than max_points, " + std::to_string(max_points) +
+                       "; thin it out (VoxelGrid), or raise max_points");
   if (cloud.is_bigendian)
-    throw BadCloud("the cloud is big-endian; publish it with is_bigendian false");
+    throw InvalidInput("the cloud is big-endian; publish it with is_bigendian false");
   const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
   if (cloud.point_step == 0 || cloud.row_step < row)
-    throw BadCloud("the cloud's row_step is " + std::to_string(cloud.row_step) +
-                   ", but its width is " + std::to_string(cloud.width) + " and its point_step " +
-                   std::to_string(cloud.point_step) + "; set row_step to width * point_step");
+    throw InvalidInput("the cloud's row_step is " + std::to_string(cloud.row_step) +
+                       ", but its width is " + std::to_string(cloud.width) +
+                       " and its point_step " + std::to_string(cloud.point_step) +
+                       "; set row_step to width * point_step");
   const std::uint64_t bytes = std::uint64_t{cloud.height - 1} * cloud.row_step + row;
   if (cloud.data.size() < bytes)
-    throw BadCloud("the cloud has " + std::to_string(cloud.data.size()) + " bytes of data, but " +
-                   std::to_string(points) + " points need " + std::to_string(bytes) +
-                   "; send all of the data, or correct width and height");
+    throw InvalidInput("the cloud has " + std::to_string(cloud.data.size()) +
+                       " bytes of data, but " + std::to_string(points) + " points need " +
+                       std::to_string(bytes) +
+                       "; send all of the data, or correct width and height");
   for (const char* name : {"x", "y", "z"}) {
     const pcl::PCLPointField* field = findField(cloud, name);
     if (!field)
-      throw BadCloud(std::string("the cloud has no field '") + name +
-                     "'; publish one with x, y and z");
+      throw InvalidInput(std::string("the cloud has no field '") + name +
+                         "'; publish one with x, y and z");
     const std::size_t size = sizeOf(field->datatype);
     if (size == 0)
-      throw BadCloud("the field '" + field->name +
-                     "' is an integer; publish coordinates as FLOAT32 or FLOAT64");
+      throw InvalidInput("the field '" + field->name +
+                         "' is an integer; publish coordinates as FLOAT32 or FLOAT64");
     if (std::uint64_t{field->offset} + size > cloud.point_step)
-      throw BadCloud("the field '" + field->name + "' ends after byte " +
-                     std::to_string(std::uint64_t{field->offset} + size) +
-                     " of a point, but point_step is " + std::to_string(cloud.point_step) +
-                     "; correct offset or point_step");
+      throw InvalidInput("the field '" + field->name + "' ends after byte " +
+                         std::to_string(std::uint64_t{field->offset} + size) +
+                         " of a point, but point_step is " + std::to_string(cloud.point_step) +
+                         "; correct offset or point_step");
   }
 }
 
@@ -242,31 +239,16 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
 }  // namespace
 
 const char* nameOf(Status status) {
-  switch (status) {
-  case Status::Done:
-    return "done";
-  case Status::Failed:
-    return "failed";
-  case Status::Cancelled:
-    return "cancelled";
-  case Status::Dropped:
-    return "dropped";
-  case Status::Refused:
-    return "refused";
-  }
-  return "";
+  constexpr const char* names[] = {"done", "failed", "cancelled", "dropped", "refused"};
+  return names[static_cast<std::size_t>(status)];
 }
 
 Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                   const std::function<bool()>& is_wanted) {
-  const auto passed = [start = std::chrono::steady_clock::now()] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+  const auto start = std::chrono::steady_clock::now();
   Outcome outcome;
   try {
     reconstruct(cloud, settings, is_wanted, outcome);
-  } catch (const BadCloud& error) {
-    outcome.message = error.what();
   } catch (const spherical_param::Cancelled&) {
     outcome.status = Status::Cancelled;
     outcome.message = "cancelled; send the cloud again";
@@ -280,7 +262,7 @@ Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
     if (outcome.message.find("; ") == std::string::npos)
       outcome.message += "; check the scanner and the filters before this node";
   }
-  outcome.seconds = passed();
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outcome;
 }
 

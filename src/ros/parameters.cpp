@@ -189,14 +189,11 @@ Value parameterOf(const Settings& settings, const std::string& name) {
 
 std::string textOf(const Value& value) {
   std::ostringstream text;
-  if (const auto* truth_value = std::get_if<bool>(&value))
-    text << (*truth_value ? "true" : "false");
-  else if (const auto* number = std::get_if<std::int64_t>(&value))
-    text << *number;
-  else if (const auto* real_number = std::get_if<double>(&value))
-    text << *real_number;
-  else
+  text << std::boolalpha;
+  if (std::holds_alternative<std::string>(value))
     text << "'" << std::get<std::string>(value) << "'";
+  else
+    std::visit([&](const auto& known) { text << known; }, value);
   return text.str();
 }
 

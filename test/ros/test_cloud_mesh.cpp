@@ -5,6 +5,7 @@
 
 #include "spherical_param/reconstruct.h"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -180,14 +181,12 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   settings.options.topology = spherical_param::TopologyMode::Sphere;
   EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 stray point in the mesh"),
             std::string::npos);
-  for (const char* outliers : {"auto", "4"}) {
-    setParameter(settings, "outliers", std::string(outliers));
-    const Outcome outcome = meshed(cloud, settings);
-    EXPECT_EQ(outcome.outliers, 1U);
-    ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
-    EXPECT_EQ(record(outcome.mesh->cloud, 98), record(cloud, 99));
-    EXPECT_EQ(record(outcome.mesh->cloud, 99), record(cloud, 101));
-  }
+  settings.options.outliers = spherical_param::OutlierMode::Auto;
+  const Outcome outcome = meshed(cloud, settings);
+  EXPECT_EQ(outcome.outliers, 1U);
+  ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
+  EXPECT_EQ(record(outcome.mesh->cloud, 98), record(cloud, 99));
+  EXPECT_EQ(record(outcome.mesh->cloud, 99), record(cloud, 101));
   for (const int wanted : {0, 1, 2, 20}) {
     int asked = 0;
     const Outcome ended = meshCloud(cloud, settings, [&] { return asked++ < wanted; });
@@ -255,53 +254,56 @@ TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
   EXPECT_EQ(meshed(cloud, settings).other_points, 400U);
 }
 
-TEST(RosCloudMesh, EightPartsShareOneTimeLimit) {
-  pcl::PCLPointCloud2 cloud = ellipsoid(1600);
-  const Positions part = positionsOf<float>(ellipsoid(200));
-  for (std::uint32_t i = 0; i < cloud.width; ++i) {
-    const Eigen::Vector3d p = part.col(i / 8) + Eigen::Vector3d(4.0 * (i % 8), 0.0, 0.0);
-    setPoint(cloud, i, p.x(), p.y(), p.z());
-  }
-  Settings settings;
-  settings.options.parts = spherical_param::PartsMode::Each;
-  settings.options.time_limit = 0.0;
-  const Outcome outcome = meshCloud(cloud, settings, {});
-  EXPECT_EQ(outcome.parts, 8U);
-  ASSERT_EQ(outcome.warnings.size(), 1U);
-  EXPECT_NE(outcome.warnings[0].find("part 7, part 8: the time limit"), std::string::npos);
-}
-
-TEST(RosCloudMesh, AnOpenSurfaceIsNoFaultUnlessItsOpeningsAreFilled) {
+TEST(RosCloudMesh, SmoothFillsAddRecordsAtTheEndAndAreFaults) {
   const pcl::PCLPointCloud2 bowl = some(ellipsoid(1500), 500, 1000);
+  const Positions points = positionsOf<float>(bowl);
   Settings settings;
-  settings.options.surface = spherical_param::SurfaceMode::Closed;
-  EXPECT_TRUE(meshed(bowl, settings).has_faults);
   settings.options.surface = spherical_param::SurfaceMode::Open;
-  const Outcome outcome = meshed(bowl, settings);
-  EXPECT_FALSE(outcome.has_faults);
-  expectCoresMesh<float>(outcome, positionsOf<float>(bowl), settings);
-}
-
-TEST(RosCloudMesh, SmoothFillsAddRecordsAtTheEnd) {
-  const pcl::PCLPointCloud2 bowl = some(ellipsoid(1500), 500, 1000);
-  Settings settings;
-  setParameter(settings, "surface", std::string("closed"));
-  setParameter(settings, "fill", std::string("smooth"));
-  const Outcome outcome = meshed(bowl, settings);
-  expectCoresMesh<float>(outcome, positionsOf<float>(bowl), settings);
-  const Mesh& mesh = *outcome.mesh;
+  const Outcome open = meshed(bowl, settings);
+  EXPECT_FALSE(open.has_faults);
+  expectCoresMesh<float>(open, points, settings);
+  settings.options.surface = spherical_param::SurfaceMode::Closed;
+  settings.options.fill = spherical_param::FillMode::Smooth;
+  const Outcome filled = meshed(bowl, settings);
+  EXPECT_TRUE(filled.has_faults);
+  expectCoresMesh<float>(filled, points, settings);
+  const Mesh& mesh = *filled.mesh;
   ASSERT_GT(mesh.vertices.size(), 1000U);
   EXPECT_EQ(mesh.colors.size(), mesh.vertices.size());
   EXPECT_EQ(some(mesh.cloud, 0, 1000).data, bowl.data);
-  std::set<Record> fields;
-  const auto fields_of = [](Record of) {
-    of.erase(of.begin(), of.begin() + 12);
-    return of;
+  std::set<Record> others;  // what the records of the bowl have besides coordinates
+  const auto other_fields = [](const pcl::PCLPointCloud2& cloud, std::size_t i) {
+    const Record whole = record(cloud, i);
+    return Record(whole.begin() + 12, whole.end());
   };
   for (std::size_t i = 0; i < 1000; ++i)
-    fields.insert(fields_of(record(bowl, i)));
+    others.insert(other_fields(bowl, i));
   for (std::size_t i = 1000; i < mesh.vertices.size(); ++i)
-    EXPECT_EQ(fields.count(fields_of(record(mesh.cloud, i))), 1U);
+    EXPECT_EQ(others.count(other_fields(mesh.cloud, i)), 1U);
+}
+
+// The sensor is at the origin.
+TEST(RosCloudMesh, SurfacesFaceTheSensorOrAsTheNormalsOfThePointsDo) {
+  pcl::PCLPointCloud2 cloud = ellipsoid(400);
+  for (std::uint32_t i = 0; i < 400; ++i)
+    setPoint(cloud, i, i % 20 - 9.5, i / 20 - 9.5, 5.0 + 0.01 * (i % 7));
+  for (const bool has_normals : {false, true}) {
+    if (has_normals) {  // away from the sensor
+      cloud.fields[3] = test::field("normal_z", 12);
+      for (std::uint32_t i = 0; i < 400; ++i) {
+        test::put(cloud, i, 12, 1.0F);
+        test::put(cloud, i, 16, 0.0F);
+      }
+      cloud.fields.push_back(test::field("normal_x", 16));
+      cloud.fields.push_back(test::field("normal_y", 16));
+    }
+    const Outcome outcome = meshed(cloud);
+    Eigen::Matrix3d corners;
+    for (int k = 0; k < 3; ++k)
+      corners.col(k) = Eigen::Vector3d(
+          outcome.mesh->vertices[outcome.mesh->triangles[0][static_cast<std::size_t>(k)]].data());
+    EXPECT_EQ(corners.determinant() > 0.0, has_normals);
+  }
 }
 
 TEST(RosCloudMesh, BadCloudsAreAnsweredWithCauseAndRemedy) {

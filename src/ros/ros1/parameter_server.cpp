@@ -36,6 +36,19 @@ void append(Config& config, const std::string& name, const Value& value) {
     append(config.strs, name, std::get<std::string>(value));
 }
 
+/// Calls for the name and the value of each entry.
+template <typename Use>
+void forEach(const Config& config, const Use& use) {
+  for (const auto& entry : config.bools)
+    use(entry.name, entry.value != 0);
+  for (const auto& entry : config.ints)
+    use(entry.name, entry.value);
+  for (const auto& entry : config.doubles)
+    use(entry.name, entry.value);
+  for (const auto& entry : config.strs)
+    use(entry.name, entry.value);
+}
+
 /// A limit of a parameter, in its type.
 Value limitOf(const ParameterInfo& info, double limit, bool is_max) {
   if (std::holds_alternative<bool>(info.default_value))
@@ -134,14 +147,9 @@ bool ParameterServer::onRequest(dynamic_reconfigure::Reconfigure::Request& reque
                                 dynamic_reconfigure::Reconfigure::Response& response) {
   Settings changed = settings_;
   try {
-    for (const auto& entry : request.config.bools)
-      setParameter(changed, entry.name, entry.value != 0);
-    for (const auto& entry : request.config.ints)
-      setParameter(changed, entry.name, std::int64_t{entry.value});
-    for (const auto& entry : request.config.doubles)
-      setParameter(changed, entry.name, entry.value);
-    for (const auto& entry : request.config.strs)
-      setParameter(changed, entry.name, entry.value);
+    forEach(request.config, [&](const std::string& name, const auto& value) {
+      setParameter(changed, name, value);
+    });
     apply_(changed);
     settings_ = changed;
   } catch (const spherical_param::InvalidInput& error) {
@@ -154,14 +162,7 @@ bool ParameterServer::onRequest(dynamic_reconfigure::Reconfigure::Request& reque
 
 void ParameterServer::announce() const {
   const Config config = configOf(settings_);
-  for (const auto& entry : config.bools)
-    node_.setParam(entry.name, entry.value != 0);
-  for (const auto& entry : config.ints)
-    node_.setParam(entry.name, entry.value);
-  for (const auto& entry : config.doubles)
-    node_.setParam(entry.name, entry.value);
-  for (const auto& entry : config.strs)
-    node_.setParam(entry.name, entry.value);
+  forEach(config, [&](const std::string& name, const auto& value) { node_.setParam(name, value); });
   update_publisher_.publish(config);
 }
 

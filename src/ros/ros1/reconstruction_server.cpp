@@ -1,8 +1,7 @@
 #include "ros1/reconstruction_server.h"
 
-#include "ros1/mesh_messages.h"
+#include "messages.h"
 
-#include <pcl_conversions/pcl_conversions.h>
 #include <pcl_msgs/PolygonMesh.h>
 #include <shape_msgs/Mesh.h>
 #include <visualization_msgs/Marker.h>
@@ -16,12 +15,6 @@
 
 namespace spherical_param_ros {
 namespace {
-
-ReconstructionWorker::Cloud neutralCloud(const sensor_msgs::PointCloud2& message) {
-  auto cloud = std::make_shared<pcl::PCLPointCloud2>();
-  pcl_conversions::toPCL(message, *cloud);
-  return cloud;
-}
 
 /// The shutdown of older roscpp first waits for the services that are being called: without this
 /// question the process would not end before its mesh is done.
@@ -87,7 +80,7 @@ bool ReconstructionServer::onRequest(Request& request, Response& response) {
   response.success = static_cast<unsigned char>(outcome.status == Status::Done);
   response.message = outcome.message;
   if (outcome.mesh)
-    response.mesh = polygonMeshOf(*outcome.mesh, request.cloud.header);
+    response.mesh = polygonMeshOf<pcl_msgs::PolygonMesh>(*outcome.mesh, request.cloud.header);
   else
     ROS_WARN_STREAM_NAMED(name_, "A request cannot be answered with a mesh: " << outcome.message);
   // false would keep the message from the caller.
@@ -104,11 +97,13 @@ void ReconstructionServer::publish(const Outcome& outcome, const std_msgs::Heade
   for (const std::string& warning : outcome.warnings)
     ROS_DEBUG_STREAM_NAMED(name_, warning);
   // As shared pointers, which nodelets take without a copy.
-  mesh_publisher_.publish(
-      boost::make_shared<pcl_msgs::PolygonMesh>(polygonMeshOf(*outcome.mesh, header)));
-  shape_publisher_.publish(boost::make_shared<shape_msgs::Mesh>(shapeOf(*outcome.mesh)));
-  marker_publisher_.publish(
-      boost::make_shared<visualization_msgs::Marker>(markerOf(*outcome.mesh, header)));
+  const Mesh& mesh = *outcome.mesh;
+  const auto send = [](const ros::Publisher& publisher, auto message) {
+    publisher.publish(boost::make_shared<decltype(message)>(std::move(message)));
+  };
+  send(mesh_publisher_, polygonMeshOf<pcl_msgs::PolygonMesh>(mesh, header));
+  send(shape_publisher_, shapeOf<shape_msgs::Mesh>(mesh));
+  send(marker_publisher_, markerOf<visualization_msgs::Marker>(mesh, header));
 }
 
 void ReconstructionServer::updateDiagnostics() {
@@ -122,35 +117,10 @@ void ReconstructionServer::updateDiagnostics() {
 }
 
 void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using Level = diagnostic_msgs::DiagnosticStatus;
   const Statistics statistics = worker_->statistics();
-  const Outcome& last = statistics.last;
-  const char* state = statistics.is_working ? "working" : "idle";
-  if (statistics.failed > failed_when_diagnosed_ || last.has_faults) {
-    status.summary(Level::WARN, last.status == Status::Failed ? "the last cloud could not be meshed"
-                                : statistics.failed > failed_when_diagnosed_
-                                    ? "a cloud could not be meshed"
-                                    : "the last mesh has faults");
-  } else {
-    status.summary(Level::OK, state);
-  }
-  failed_when_diagnosed_ = statistics.failed;
-  status.add("state", state);
-  status.add("last result", statistics.has_last ? nameOf(last.status) : "none");
-  status.add("last message", last.message);
-  status.add("last time [s]", last.seconds);
-  status.add("last cloud [points]", last.points);
-  status.add("last parts", last.parts);
-  status.add("last outliers [points]", last.outliers);
-  status.add("last other parts [points]", last.other_points);
-  status.add("last self-intersections", last.self_intersections);
-  status.add("received clouds", statistics.received);
-  status.add("done clouds", statistics.done);
-  status.add("failed clouds", statistics.failed);
-  status.add("dropped clouds", statistics.dropped);
-  status.add("cancelled clouds", statistics.cancelled);
+  spherical_param_ros::diagnose(statistics, failed_when_diagnosed_, status);
   status.add("refused requests", statistics.refused);
-  status.add("waiting clouds", statistics.queued);
+  failed_when_diagnosed_ = statistics.failed;
 }
 
 }  // namespace spherical_param_ros

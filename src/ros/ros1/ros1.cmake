@@ -16,7 +16,6 @@ generate_messages(DEPENDENCIES pcl_msgs sensor_msgs std_msgs)
 catkin_package(SKIP_CMAKE_CONFIG_GENERATION SKIP_PKG_CONFIG_GENERATION)
 
 add_library(spherical_param_nodelet SHARED
-  src/ros/ros1/mesh_messages.cpp
   src/ros/ros1/parameter_server.cpp
   src/ros/ros1/reconstruction_nodelet.cpp
   src/ros/ros1/reconstruction_server.cpp)

@@ -8,6 +8,7 @@ if(NOT SPHERICAL_PARAM_BUILD_ROS_NODES)
 endif()
 
 add_executable(spherical_param_node src/ros/ros2/spherical_param_node.cpp)
+target_include_directories(spherical_param_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(spherical_param_node PRIVATE spherical_param_ros)
 foreach(package IN LISTS ros2_packages)
   # Again: what cmake/Ros.cmake found is known to its function alone.

@@ -1,0 +1,125 @@
+#pragma once
+
+#include "spherical_param_ros/reconstruction_worker.h"
+
+#include <pcl_conversions/pcl_conversions.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+/// What the nodes of ROS 1 and 2 say, in the types of either: these have the same fields.
+namespace spherical_param_ros {
+
+template <typename PointCloud2>
+ReconstructionWorker::Cloud neutralCloud(const PointCloud2& message) {
+  auto cloud = std::make_shared<pcl::PCLPointCloud2>();
+  pcl_conversions::toPCL(message, *cloud);
+  return cloud;
+}
+
+/// \param header of the message the cloud came in: PCL's has no nanoseconds.
+template <typename PolygonMesh, typename Header>
+PolygonMesh polygonMeshOf(const Mesh& mesh, const Header& header) {
+  PolygonMesh message;
+  pcl_conversions::fromPCL(mesh.cloud, message.cloud);
+  message.header = header;
+  message.cloud.header = header;
+  message.polygons.resize(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    message.polygons[t].vertices.assign(mesh.triangles[t].begin(), mesh.triangles[t].end());
+  return message;
+}
+
+template <typename Point>
+Point pointOf(const std::array<double, 3>& vertex) {
+  Point point;
+  point.x = vertex[0];
+  point.y = vertex[1];
+  point.z = vertex[2];
+  return point;
+}
+
+/// Has neither header nor colours: its receiver must know the frame.
+template <typename Shape>
+Shape shapeOf(const Mesh& mesh) {
+  Shape message;
+  message.vertices.reserve(mesh.vertices.size());
+  for (const auto& vertex : mesh.vertices)
+    message.vertices.push_back(pointOf<typename decltype(message.vertices)::value_type>(vertex));
+  message.triangles.resize(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      message.triangles[t].vertex_indices[corner] = mesh.triangles[t][corner];
+  return message;
+}
+
+template <typename Color>
+Color colorOf(const std::array<std::uint8_t, 4>& rgba) {
+  Color color;
+  color.r = static_cast<float>(rgba[0]) / 255.0F;
+  color.g = static_cast<float>(rgba[1]) / 255.0F;
+  color.b = static_cast<float>(rgba[2]) / 255.0F;
+  // Many drivers leave alpha 0, and nothing would be seen.
+  color.a = rgba[3] == 0 ? 1.0F : static_cast<float>(rgba[3]) / 255.0F;
+  return color;
+}
+
+/// A TRIANGLE_LIST with a colour for each corner where the mesh has colours.
+template <typename Marker, typename Header>
+Marker markerOf(const Mesh& mesh, const Header& header) {
+  Marker marker;
+  marker.header = header;
+  marker.ns = "spherical_param";
+  marker.type = Marker::TRIANGLE_LIST;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  marker.color.r = marker.color.g = marker.color.b = 0.8F;
+  marker.color.a = 1.0F;
+  marker.points.reserve(3 * mesh.triangles.size());
+  marker.colors.reserve(mesh.colors.empty() ? 0 : 3 * mesh.triangles.size());
+  using Point = typename decltype(marker.points)::value_type;
+  using Color = typename decltype(marker.colors)::value_type;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) {
+      marker.points.push_back(pointOf<Point>(mesh.vertices[vertex]));
+      if (!mesh.colors.empty())
+        marker.colors.push_back(colorOf<Color>(mesh.colors[vertex]));
+    }
+  return marker;
+}
+
+/// \param failed_before clouds that had failed when this was last said
+template <typename Wrapper>
+void diagnose(const Statistics& statistics, std::uint64_t failed_before, Wrapper& status) {
+  const Outcome& last = statistics.last;
+  const std::string state = statistics.is_working ? "working" : "idle";
+  if (statistics.failed > failed_before)
+    status.summary(Wrapper::WARN, last.status == Status::Failed
+                                      ? "the last cloud could not be meshed"
+                                      : "a cloud could not be meshed");
+  else if (last.has_faults)
+    status.summary(Wrapper::WARN, "the last mesh has faults");
+  else
+    status.summary(Wrapper::OK, state);
+  status.add("state", state);
+  status.add("last result", std::string(statistics.has_last ? nameOf(last.status) : "none"));
+  status.add("last message", last.message);
+  status.add("last time [s]", last.seconds);
+  status.add("last cloud [points]", last.points);
+  status.add("last parts", last.parts);
+  status.add("last outliers [points]", last.outliers);
+  status.add("last other parts [points]", last.other_points);
+  status.add("last self-intersections", last.self_intersections);
+  status.add("received clouds", statistics.received);
+  status.add("done clouds", statistics.done);
+  status.add("failed clouds", statistics.failed);
+  status.add("dropped clouds", statistics.dropped);
+  status.add("cancelled clouds", statistics.cancelled);
+  status.add("waiting clouds", statistics.queued);
+}
+
+}  // namespace spherical_param_ros
