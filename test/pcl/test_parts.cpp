@@ -4,27 +4,12 @@
 
 #include <pcl/search/kdtree.h>
 
-#include <random>
 #include <string>
 
 namespace {
 
 using namespace test;
 using spherical_param::PartsMode;
-
-/// 200 points of one ellipsoid and 300 of another beside it, in turn as long as both last.
-Cloud::Ptr makeTwo() {
-  const Cloud::Ptr small = makeEllipsoid(200);
-  const Cloud::Ptr large = makeEllipsoid(300);
-  Cloud::Ptr cloud(new Cloud);
-  for (std::size_t i = 0; i < 300; ++i) {
-    if (i < 200)
-      cloud->push_back((*small)[i]);
-    cloud->push_back((*large)[i]);
-    cloud->back().x += 5.0F;
-  }
-  return cloud;
-}
 
 Cloud::Ptr beside(const Cloud::Ptr& cloud) {
   for (PointXYZ& point : *cloud)
@@ -33,12 +18,20 @@ Cloud::Ptr beside(const Cloud::Ptr& cloud) {
 }
 
 TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
+  const Cloud::Ptr small = makeEllipsoid(200);
+  const Cloud::Ptr large = beside(makeEllipsoid(300));
+  const Cloud::Ptr cloud(new Cloud);
+  for (std::size_t i = 0; i < 300; ++i) {  // in turn as long as both last
+    if (i < 200)
+      cloud->push_back((*small)[i]);
+    cloud->push_back((*large)[i]);
+  }
   for (const bool has_search : {false, true}) {
     Reconstruction reconstruction;
     if (has_search)
       reconstruction.setSearchMethod(
           pcl::search::KdTree<PointXYZ>::Ptr(new pcl::search::KdTree<PointXYZ>));
-    reconstruction.setInputCloud(makeTwo());
+    reconstruction.setInputCloud(cloud);
     reconstruction.setParts(PartsMode::Each);
     const Polygons polygons = meshed(reconstruction);
     ASSERT_EQ(reconstruction.getPartCount(), 2U);
@@ -46,14 +39,11 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     EXPECT_EQ(reconstruction.getUsedIndices(0).size(), 300U);
     EXPECT_EQ(reconstruction.getUsedIndices(1).size(), 200U);
     EXPECT_EQ(reconstruction.getUsedIndices(1)[1], 2);
-    Reconstruction alone;
-    alone.setInputCloud(beside(makeEllipsoid(300)));
-    const Triangles of_large = trianglesOf(meshed(alone));
+    const Triangles of_large = trianglesOf(meshed(large));
     EXPECT_EQ(reconstruction.getResult().surfaces[0].triangles, of_large);
     EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
               polygons.front().vertices.front());
-    EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles,
-              trianglesOf(meshed(makeEllipsoid(200))));
+    EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles, trianglesOf(meshed(small)));
     EXPECT_TRUE(reconstruction.getDiagnosis(1).looksClosedGenus0());
     const auto sphere = reconstruction.getSphereCoordinates();
     EXPECT_TRUE(sphere->is_dense);
@@ -92,45 +82,6 @@ TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
   EXPECT_NE(warning.find("1 part (100 points) cannot be meshed"), std::string::npos);
   EXPECT_EQ(reconstruction.getPartCount(), 1U);
   EXPECT_EQ(reconstruction.getResult().left_out.other_parts.size(), 100U);
-}
-
-TEST(PartsOfCloud, ShareOneTimeLimit) {
-  const Cloud::Ptr cloud(new Cloud);
-  std::mt19937 random(3);
-  std::normal_distribution<float> noise(0.0F, 0.1F);
-  const Cloud::Ptr ellipsoid = makeEllipsoid(150);
-  for (int part = 0; part < 8; ++part)
-    for (PointXYZ point : *ellipsoid) {
-      point.x += noise(random) + 6.0F * static_cast<float>(part);
-      point.y += noise(random);
-      cloud->push_back(point);
-    }
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(cloud);
-  reconstruction.setParts(PartsMode::Each);
-  reconstruction.setTimeLimit(0.0);
-  meshed(reconstruction);
-  EXPECT_EQ(reconstruction.getPartCount(), 8U);
-  for (const Surface& surface : reconstruction.getResult().surfaces)
-    EXPECT_TRUE(surface.is_out_of_time);
-}
-
-TEST(OutliersOfCloud, AreLeftOutAndListed) {
-  const Cloud::Ptr cloud = makeEllipsoid(400);
-  for (const float x : {4.0F, -4.0F})
-    cloud->push_back(PointXYZ(x, 0.0F, 0.0F));
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(cloud);
-  reconstruction.setTopology(spherical_param::TopologyMode::Sphere);
-  for (const double sigma : {6.0, 1000.0}) {
-    reconstruction.setOutliers(spherical_param::OutlierMode::Deviation);
-    reconstruction.setOutlierSigma(sigma);
-    EXPECT_EQ(reconstruction.getOutlierSigma(), sigma);
-    meshed(reconstruction);
-    const auto& outliers = reconstruction.getResult().left_out.outliers;
-    EXPECT_EQ(outliers.size(), sigma == 6.0 ? 2U : 0U);
-    EXPECT_EQ(reconstruction.getSphereCoordinates()->is_dense, outliers.empty());
-  }
 }
 
 }  // namespace

@@ -85,8 +85,7 @@ TEST_F(SphericalParamReconstruction, IndicesMayHaveAnyOrderAndComeInAllTypesOfPc
 TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSensor) {
   using spherical_param::FacedBy;
   pcl::PointCloud<pcl::PointNormal>::Ptr with_normals(new pcl::PointCloud<pcl::PointNormal>);
-  const Cloud::Ptr ellipsoid = makeEllipsoid(300);
-  for (const PointXYZ& p : *ellipsoid)
+  for (const PointXYZ& p : *makeEllipsoid(300))
     with_normals->push_back(pcl::PointNormal(p.x, p.y, p.z, -p.x, -p.y, -p.z));
   pcl::SphericalParamReconstruction<pcl::PointNormal> inward;
   inward.setInputCloud(with_normals);
@@ -95,36 +94,17 @@ TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSen
   EXPECT_LT(inward.getResult().surface().measures.volume, 0.0);
 
   const Cloud::Ptr patch(new Cloud);
-  for (int i = 0; i < 400; ++i)
+  for (int i = 0; i < 400; ++i)  // around the origin
     patch->push_back(PointXYZ(static_cast<float>(i % 20) - 10.0F,
                               static_cast<float>(i / 20) - 10.0F,
-                              5.0F + 0.01F * static_cast<float>(i % 7)));
+                              0.01F * static_cast<float>(i % 7) - 0.02F));
   Reconstruction reconstruction;
   reconstruction.setInputCloud(patch);
-  EXPECT_FALSE(meshed(reconstruction).empty());
-  EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Viewpoint);
-  for (PointXYZ& point : *patch)
-    point.z -= 5.02F;  // around the origin
   meshed(reconstruction);
   EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Up);
   patch->sensor_origin_ = Eigen::Vector4f(0.0F, 0.0F, -30.0F, 0.0F);
   meshed(reconstruction);
   EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Viewpoint);
-}
-
-TEST_F(SphericalParamReconstruction, TheTopologyIsThatOfTheScanOrASphere) {
-  const Cloud::Ptr cloud = makeTorus(24);
-  const std::size_t of_torus = cloud->size();
-  *cloud += *beside(makeEllipsoid(300));
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(cloud);
-  EXPECT_EQ(reconstruction.getTopology(), spherical_param::TopologyMode::Scan);
-  meshed(reconstruction);
-  EXPECT_EQ(reconstruction.getPartCount(), 2U);
-  EXPECT_EQ(reconstruction.getResult().surface().vertexCount(), of_torus);
-  reconstruction.setTopology(spherical_param::TopologyMode::Sphere);
-  reconstruction.setTimeLimit(0.0);
-  EXPECT_TRUE(isSphere(meshed(reconstruction), cloud->size()));
 }
 
 TEST_F(SphericalParamReconstruction, OrganizedCloudsAreMeshedWhateverIsDenseSays) {
@@ -273,31 +253,27 @@ TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing
 }
 
 TEST_F(SphericalParamReconstruction, SmoothFillsAppendPointsToThePolygonMesh) {
-  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (int i = 0; i < 2000; ++i) {
-    // A spiral on a sphere, without the caps.
-    const float z = 1.0F - (static_cast<float>(i) + 0.5F) / 1000.0F;
-    const float radius = std::sqrt(1.0F - z * z);
-    const float angle = 2.3999632F * static_cast<float>(i);
-    if (std::abs(z) < 0.8F)
-      cloud->emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-  }
+  const Cloud::Ptr whole = makeEllipsoid(2000);
+  const Cloud::Ptr cloud(new Cloud);
+  for (const PointXYZ& point : *whole)
+    if (std::abs(point.z) < 0.6F)
+      cloud->push_back(point);
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
   reconstruction.setSurface(spherical_param::SurfaceMode::Closed);
   reconstruction.setFill(spherical_param::FillMode::Smooth);
   pcl::PolygonMesh mesh;
   reconstruction.reconstruct(mesh);
-  const std::size_t added = reconstruction.getResult().surface().added_vertices;
-  EXPECT_GT(added, 0U);
-  EXPECT_EQ(mesh.cloud.width * mesh.cloud.height, cloud->size() + added);
+  const Surface& surface = reconstruction.getResult().surface();
+  const Cloud points = cloudOf<PointXYZ>(mesh.cloud);
+  EXPECT_GT(surface.added_vertices, 0U);
+  ASSERT_EQ(points.size(), cloud->size() + surface.added_vertices);
+  EXPECT_TRUE(isSphere(mesh.polygons, points.size()));
+  for (std::size_t i = cloud->size(); i < points.size(); ++i)
+    EXPECT_EQ(points[i].getVector3fMap(),
+              surface.filled.col(static_cast<Eigen::Index>(i)).cast<float>());
   // Polygons alone are those of the input.
-  std::vector<pcl::Vertices> polygons;
-  reconstruction.reconstruct(polygons);
-  EXPECT_LT(polygons.size(), mesh.polygons.size());
-  for (const pcl::Vertices& polygon : polygons)
-    for (const auto v : polygon.vertices)
-      EXPECT_LT(static_cast<std::size_t>(v), cloud->size());
+  EXPECT_TRUE(isSphere(meshed(reconstruction), cloud->size()));
 }
 
 TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt) {
@@ -355,6 +331,7 @@ struct Setter {
 TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
   using Integer = std::int64_t;
   const std::vector<Setter> setters{
+      SETTER("topology", "sphere", Topology, spherical_param::TopologyMode::Sphere),
       SETTER("outliers", "auto", Outliers, spherical_param::OutlierMode::Auto),
       SETTER("parts", "each", Parts, spherical_param::PartsMode::Each),
       SETTER("min_points", Integer{7}, MinPartSize, 7),
@@ -388,6 +365,9 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
   EXPECT_EQ(unset.getKSearch(), 25);
   EXPECT_FALSE(unset.getTolerance().has_value());
   EXPECT_FALSE(unset.getProgressCallback());
+  unset.setOutlierSigma(6.0);  // beside the mode in the table
+  EXPECT_EQ(unset.getOptions().outlier_sigma, 6.0);
+  EXPECT_EQ(unset.getOutlierSigma(), 6.0);
 }
 
 // --- Progress and threads ------------------------------------------------------------------------
