@@ -51,15 +51,7 @@ spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   if (reconstruction.getResult().surface().moved().cols() > 0)
     return reconstruction.getResult().surface().moved();
-  const pcl::Indices& vertices = reconstruction.getVertexIndices();
-  const auto& cloud = *reconstruction.getInputCloud();
-  spherical_param::Positions points(3, static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const PointInT& point = cloud[static_cast<std::size_t>(vertices[i])];
-    points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
-        static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
-  }
-  return points;
+  return positionsOf(*reconstruction.getInputCloud(), reconstruction.getVertexIndices());
 }
 
 /** \brief Meshes a cloud and maps the mesh.

@@ -104,8 +104,7 @@ public:
    * \note setParts(), setSurface(), setHandles(), setIntersections() and setOutliers() override a
    * part each. */
   inline void setTopology(TopologyMode mode) { options_.topology = mode; }
-  /** \brief Get the topology of the mesh.
-   * \return the mode */
+  /** \brief Get the value of setTopology(). \return it */
   inline TopologyMode getTopology() const { return options_.topology; }
 
   /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
@@ -115,8 +114,7 @@ public:
    * and Surface::consolidation of getResult() the figures. The search object is used for
    * setOutliers() and setParts() alone. */
   inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
-  /** \brief Get whether the points are consolidated.
-   * \return the mode */
+  /** \brief Get the value of setConsolidation(). \return it */
   inline ConsolidationMode getConsolidation() const { return options_.consolidation; }
 
   /** \brief Set whether openings of the surface are filled.
@@ -124,15 +122,13 @@ public:
    * Default: as setTopology() says.
    * \note getResult() has the openings with their certainty, and the boundary of an open mesh. */
   inline void setSurface(SurfaceMode mode) { options_.surface = mode; }
-  /** \brief Get whether openings of the surface are filled.
-   * \return the mode */
+  /** \brief Get the value of setSurface(). \return it */
   inline SurfaceMode getSurface() const { return options_.surface; }
 
   /** \brief Set up to which size openings are filled in any case.
    * \param[in] edges of the loop around an opening; default 0: none */
   inline void setFillHoles(int edges) { options_.fill_holes = edges; }
-  /** \brief Get up to which size openings are filled.
-   * \return the number of edges around them */
+  /** \brief Get the value of setFillHoles(). \return it */
   inline int getFillHoles() const { return options_.fill_holes; }
 
   /** \brief Set whether the mesh has the handles of the surface.
@@ -142,8 +138,7 @@ public:
    * A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None for
    * remeshing and morphing. getResult() has the loops of the handles. */
   inline void setHandles(HandleMode mode) { options_.handles = mode; }
-  /** \brief Get whether the mesh has the handles of the surface.
-   * \return the mode */
+  /** \brief Get the value of setHandles(). \return it */
   inline HandleMode getHandles() const { return options_.handles; }
 
   /** \brief Set how openings are filled, if they are.
@@ -152,8 +147,7 @@ public:
    * other fields of the nearest vertex. The other overloads fill flat: their polygons index the
    * input. */
   inline void setFill(FillMode mode) { options_.fill = mode; }
-  /** \brief Get how openings are filled.
-   * \return the mode */
+  /** \brief Get the value of setFill(). \return it */
   inline FillMode getFill() const { return options_.fill; }
 
   /** \brief Set what happens to triangles that still intersect at the end.
@@ -161,8 +155,7 @@ public:
    * points. Keep: they are counted. Default: as setTopology() says.
    * \note getResult().left_out.unmeshed has the points. */
   inline void setIntersections(IntersectionMode mode) { options_.intersections = mode; }
-  /** \brief Get what happens to triangles that intersect.
-   * \return the mode */
+  /** \brief Get the value of setIntersections(). \return it */
   inline IntersectionMode getIntersections() const { return options_.intersections; }
 
   /** \brief Set which points are left out first because they belong to no surface.
@@ -170,15 +163,13 @@ public:
    * Deviation: points too far from the average of their neighbours. Default: as setTopology() says.
    * \note getResult().left_out lists them. */
   inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
-  /** \brief Get which points are left out.
-   * \return the mode */
+  /** \brief Get the value of setOutliers(). \return it */
   inline OutlierMode getOutliers() const { return options_.outliers; }
 
   /** \brief Set the threshold of OutlierMode::Deviation.
    * \param[in] sigma number of standard deviations, 0 to 1000; default 4 */
   inline void setOutlierSigma(double sigma) { options_.outlier_sigma = sigma; }
-  /** \brief Get the threshold of OutlierMode::Deviation.
-   * \return number of standard deviations */
+  /** \brief Get the value of setOutlierSigma(). \return it */
   inline double getOutlierSigma() const { return options_.outlier_sigma; }
 
   /** \brief Set which parts of the cloud are meshed. A part is a set of points that neighbours
@@ -188,16 +179,14 @@ public:
    * \note With Each, a part that cannot be meshed (all points in one plane, for example) is left
    * out with a warning (PCL_WARN). */
   inline void setParts(PartsMode mode) { options_.parts = mode; }
-  /** \brief Get which parts of the cloud are meshed.
-   * \return the mode */
+  /** \brief Get the value of setParts(). \return it */
   inline PartsMode getParts() const { return options_.parts; }
 
   /** \brief Set the minimum number of distinct points of a part; smaller parts are left out. No
    * effect with PartsMode::All.
    * \param[in] points 4 and up; default 50 */
   inline void setMinPartSize(int points) { options_.min_points = points; }
-  /** \brief Get the minimum number of distinct points of a part.
-   * \return their number */
+  /** \brief Get the value of setMinPartSize(). \return it */
   inline int getMinPartSize() const { return options_.min_points; }
 
   /** \brief Set how the cloud is meshed.
@@ -205,23 +194,20 @@ public:
    * what this library adds to it.
    * \note Set Method::Paper to compare with it: it folds limbs, fills openings and takes longer. */
   inline void setMethod(Method method) { options_.method = method; }
-  /** \brief Get how the cloud is meshed.
-   * \return the method */
+  /** \brief Get the value of setMethod(). \return it */
   inline Method getMethod() const { return options_.method; }
 
   /** \brief Set the number of nearest neighbours of each point, of Method::Paper.
    * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default 25. */
   inline void setKSearch(int k) { options_.paper.k = k; }
-  /** \brief Get the number of nearest neighbours of each point, of Method::Paper.
-   * \return their number */
+  /** \brief Get the value of setKSearch(). \return it */
   inline int getKSearch() const { return options_.paper.k; }
 
   /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper), of Method::Paper.
    * \param[in] weights default EdgeWeights::Adaptive
    * \note Only adaptive weights keep the embedding from collapsing by themselves. */
   inline void setWeights(EdgeWeights weights) { options_.paper.weights = weights; }
-  /** \brief Get the weights of the Laplacian.
-   * \return the weights */
+  /** \brief Get the value of setWeights(). \return it */
   inline EdgeWeights getWeights() const { return options_.paper.weights; }
 
   /** \brief Set the mean length of the tangential Laplacian at which the embedding has converged.
@@ -234,8 +220,7 @@ public:
   inline void setTolerance(std::optional<double> tolerance) {
     options_.embedding.tolerance = tolerance;
   }
-  /** \brief Get the mean length of the tangential Laplacian at convergence.
-   * \return that of setTolerance(); unset by default */
+  /** \brief Get the value of setTolerance(). \return it */
   inline std::optional<double> getTolerance() const { return options_.embedding.tolerance; }
 
   /** \brief Set the strength of smoothing.
@@ -244,16 +229,14 @@ public:
    * \note The mesh keeps the points of the input; getMovedPoints() has the smoothed points for the
    * same polygons. */
   inline void setSmoothing(int steps) { options_.smoothing = steps; }
-  /** \brief Get the strength of the smoothing.
-   * \return the steps; 0: none */
+  /** \brief Get the value of setSmoothing(). \return it */
   inline int getSmoothing() const { return options_.smoothing; }
 
   /** \brief Set the seed of all random choices: the order of coarsening in the embedding, and the
    * parts of the mesh that the optimisation rebuilds. The same seed gives the same result.
    * \param[in] seed any number; default 1 */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
-  /** \brief Get the seed of all random choices.
-   * \return the seed */
+  /** \brief Get the value of setSeed(). \return it */
   inline std::uint32_t getSeed() const { return options_.seed; }
 
   /** \brief Set the time after which the work ends with the best mesh so far, over all parts.
@@ -262,8 +245,7 @@ public:
    * Surface::is_out_of_time of getResult() says whether the limit ended the work on a mesh.
    * \note Set it if a scan must not delay the next one. The mesh then depends on the machine. */
   inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
-  /** \brief Get the time after which the work ends.
-   * \return that of setTimeLimit() [s]; unset by default */
+  /** \brief Get the value of setTimeLimit(). \return it */
   inline std::optional<double> getTimeLimit() const { return options_.time_limit; }
 
   /** \brief Set the number of threads. The result does not depend on it.
@@ -271,8 +253,7 @@ public:
   inline void setNumberOfThreads(unsigned int threads = 0) {
     options_.threads = static_cast<int>(threads);
   }
-  /** \brief Get the number of threads.
-   * \return their number; 0: one for each processor */
+  /** \brief Get the value of setNumberOfThreads(). \return it */
   inline unsigned int getNumberOfThreads() const {
     return static_cast<unsigned int>(options_.threads);
   }
@@ -283,16 +264,14 @@ public:
   inline void setProgressCallback(const ProgressCallback& progress) {
     options_.progress = progress;
   }
-  /** \brief Get the function that receives the progress of the work.
-   * \return the function; may be empty */
+  /** \brief Get the value of setProgressCallback(). \return it */
   inline const ProgressCallback& getProgressCallback() const { return options_.progress; }
 
   /** \brief Set all options at once, also the progress callback. For options without a setter,
    * change a copy of getOptions().
    * \param[in] options checked by reconstruct() */
   inline void setOptions(const spherical_param::Options& options) { options_ = options; }
-  /** \brief Get all options at once.
-   * \return those in force */
+  /** \brief Get the value of setOptions(). \return it */
   inline const spherical_param::Options& getOptions() const { return options_; }
 
   /** \brief Mesh the points given in setInputCloud() and setIndices().

@@ -82,18 +82,11 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  const auto has_sphere = [](const spherical_param::Surface& surface) {
-    return surface.sphere.cols() > 0;
-  };
-  if (std::none_of(result_.surfaces.begin(), result_.surfaces.end(), has_sphere))
-    return detail::cloudOfNothing(0);
   return cloudOf(&spherical_param::Surface::sphere);
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
-  if (getSurfaceOf(0).moved().cols() == 0)
-    return detail::cloudOfNothing(0);
   return cloudOf(&spherical_param::Surface::moved);
 }
 
@@ -112,7 +105,7 @@ SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
     used += surface.inputs.size();
   }
   cloud->is_dense = used == input_size_;
-  return cloud;
+  return used > 0 ? cloud : detail::cloudOfNothing(0);
 }
 
 template <typename PointInT>
@@ -270,13 +263,7 @@ SphericalParamReconstruction<PointInT>::collectPoints(pcl::Indices& used_indices
   }
   used_indices.shrink_to_fit();
 
-  spherical_param::Positions points(3, static_cast<Eigen::Index>(used_indices.size()));
-  for (std::size_t i = 0; i < used_indices.size(); ++i) {
-    const PointInT& point = (*input_)[static_cast<std::size_t>(used_indices[i])];
-    points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
-        static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
-  }
-  return points;
+  return detail::positionsOf(*input_, used_indices);
 }
 
 }  // namespace pcl
