@@ -32,6 +32,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -49,64 +50,55 @@ std::string withoutFunctionName(const std::string& message) {
   return length > 0 && message.compare(length, 2, ": ") == 0 ? message.substr(length + 2) : message;
 }
 
-py::dict reconstructPoints(const DoubleArray& array, const py::dict& values,
-                           const std::optional<DoubleArray>& normals,
-                           const std::optional<std::array<double, 3>>& viewpoint,
-                           const std::optional<IndexArray>& unused, bool details,
-                           const py::object& progress) {
-  Options options = toOptions(values);
-  options.details = details;
+py::dict reconstructPoints(const Positions& points, const py::dict& values, const py::dict& info,
+                           bool details, const py::object& progress) {
   Listener listener(progress);
-  static_cast<Execution&>(options) = listener.execution(options.threads, options.time_limit);
-  const Positions points = toPositions(array);
-  const CloudInfo info = toCloudInfo(normals, viewpoint, unused);
-  return toDict(listener.run([&] { return reconstruct(points, options, {}, info); }));
+  Options options = toOptions(values, listener);
+  options.details = details;
+  const CloudInfo cloud_info = toCloudInfo(info);
+  return toDict(listener.run([&] { return reconstruct(points, options, {}, cloud_info); }));
 }
 
-IndexArray findOutlierPoints(const DoubleArray& array, const py::dict& values,
+py::object findOutlierPoints(const Positions& points, const py::dict& values,
                              const py::object& progress) {
-  Options options = toOptions(values);
   Listener listener(progress);
-  static_cast<Execution&>(options) = listener.execution(options.threads);
-  const Positions points = toPositions(array);
+  const Options options = toOptions(values, listener);
   return toArray(listener.run([&] { return findOutliers(points, options); }));
 }
 
-py::tuple findPartsOfPoints(const DoubleArray& array, const py::dict& values,
+py::tuple findPartsOfPoints(const Positions& points, const py::dict& values,
                             const py::object& progress) {
-  Options options = toOptions(values);
   Listener listener(progress);
-  static_cast<Execution&>(options) = listener.execution(options.threads);
-  const Positions points = toPositions(array);
+  const Options options = toOptions(values, listener);
   py::list parts;
   for (const std::vector<Index>& part : listener.run([&] { return findParts(points, options); }))
     parts.append(toArray(part));
   return py::tuple(parts);
 }
 
-py::dict mapToSphere(const DoubleArray& points, const IndexArray& triangles,
-                     const DoubleArray& start, double area_weight, int sweeps, int threads,
-                     const py::object& progress) {
+py::dict mapToSphere(const Positions& points, const Triangles& triangles, const Positions& start,
+                     double area_weight, int sweeps, int threads, const py::object& progress) {
   Listener listener(progress);
   SphereMapOptions options;
   static_cast<Execution&>(options) = listener.execution(threads);
   options.area_weight = area_weight;
   options.sweeps = sweeps;
-  const Positions vertices = toPositions(points);
-  const Triangles mesh = toTriangles(triangles);
-  const Positions directions = toPositions(start);
-  return toDict(
-      listener.run([&] { return computeSphereMap(vertices, mesh, directions, options); }));
+  return toDict(listener.run([&] { return computeSphereMap(points, triangles, start, options); }));
 }
 
-py::dict measureDistortion(const DoubleArray& points, const IndexArray& triangles,
-                           const DoubleArray& sphere, int threads) {
+py::dict measureDistortion(const Positions& points, const Triangles& triangles,
+                           const Positions& sphere, int threads) {
   Listener listener(py::none{});
-  const Positions vertices = toPositions(points);
-  const Triangles mesh = toTriangles(triangles);
-  const Positions directions = toPositions(sphere);
   return toDict(
-      listener.run([&] { return measureMapDistortion(vertices, mesh, directions, threads); }));
+      listener.run([&] { return measureMapDistortion(points, triangles, sphere, threads); }));
+}
+
+/// Points, triangles, directions and caps of a mesh with its map to the sphere.
+using MappedMesh = std::tuple<Positions, Triangles, Positions, Positions>;
+
+SphereSurface surfaceOf(const MappedMesh& mesh, SurfaceFit fit, int threads) {
+  const auto& [points, triangles, directions, caps] = mesh;
+  return {points, triangles, directions, {fit, threads, caps}};
 }
 
 /// Places in a mesh, as two arrays.
@@ -182,9 +174,8 @@ Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uin
   return result;
 }
 
-py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
-                       const DoubleArray& sphere, const DoubleArray& caps, const std::string& grid,
-                       std::size_t count, const std::string& fit, std::uint32_t seed, int threads,
+py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::size_t count,
+                       const std::string& fit, std::uint32_t seed, int threads,
                        const py::object& progress) {
   const bool is_even = grid == "even";
   constexpr Names<SphereGrid, 3> grid_names = {{
@@ -195,13 +186,9 @@ py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
   const SphereGrid kind = valueOf("grid", grid, grid_names);
   const SurfaceFit surface_fit = valueOf("fit", fit, kFitNames);
   Listener listener(progress);
-  const Positions vertices = toPositions(points);
-  const Triangles mesh = toTriangles(triangles);
-  const Positions directions = toPositions(sphere);
-  const Positions in_openings = toPositions(caps);
   const Remeshed remeshed = listener.run([&] {
     listener.step("surface", 0.0);
-    const SphereSurface surface(vertices, mesh, directions, {surface_fit, threads, in_openings});
+    const SphereSurface surface = surfaceOf(mesh, surface_fit, threads);
     listener.step("surface", 1.0);
     listener.step("resample", 0.0);
     return is_even ? spreadEvenly(surface, count, seed, listener)
@@ -221,23 +208,19 @@ py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
 
 /// \param points of a mesh without a map, which may have handles; then `sphere` is a start of the
 ///               map, or empty.
-py::dict textureAtlas(const std::optional<DoubleArray>& points, const IndexArray& triangles,
-                      const DoubleArray& sphere, const std::string& chart, double margin) {
+py::dict textureAtlas(const std::optional<Positions>& points, const Triangles& triangles,
+                      const Positions& sphere, const std::string& chart, double margin) {
   TextureAtlasOptions options;
   options.chart = valueOf("chart", chart, kChartNames);
   options.margin = margin;
   Listener listener(py::none{});
-  const Triangles mesh = toTriangles(triangles);
-  const Positions directions = toPositions(sphere);
-  const std::optional<Positions> vertices =
-      points ? std::optional(toPositions(*points)) : std::nullopt;
   const TextureAtlas atlas = listener.run([&] {
-    if (!vertices)
-      return makeTextureAtlas(mesh, directions, options);
-    const CutMesh cut = cutHandles(*vertices, mesh);
+    if (!points)
+      return makeTextureAtlas(triangles, sphere, options);
+    const CutMesh cut = cutHandles(*points, triangles);
     SphereMapOptions map_options;
     static_cast<Execution&>(map_options) = listener.execution(0);
-    const SphereMap map = computeSphereMap(cut.points, cut.triangles, directions, map_options);
+    const SphereMap map = computeSphereMap(cut.points, cut.triangles, sphere, map_options);
     return joinCuts(makeTextureAtlas(cut.triangles, map.sphere, options), cut);
   });
   std::vector<std::array<Index, 3>> corners;
@@ -253,21 +236,7 @@ py::dict textureAtlas(const std::optional<DoubleArray>& points, const IndexArray
                   "source_vertices"_a = toArray(corners), "source_weights"_a = toArray(weights));
 }
 
-/// A mesh with its map to the sphere, as Python gives it: points, triangles, directions, caps.
-struct MappedMesh {
-  explicit MappedMesh(const py::tuple& arrays)
-      : points(toPositions(arrays[0].cast<DoubleArray>())),
-        triangles(toTriangles(arrays[1].cast<IndexArray>())),
-        directions(toPositions(arrays[2].cast<DoubleArray>())),
-        caps(toPositions(arrays[3].cast<DoubleArray>())) {}
-
-  Positions points;
-  Triangles triangles;
-  Positions directions;
-  Positions caps;
-};
-
-py::dict morphMeshes(const py::tuple& first, const py::tuple& second, const IndexArray& pairs,
+py::dict morphMeshes(const MappedMesh& first, const MappedMesh& second, const Array<Index>& pairs,
                      bool align, const std::string& connectivity, std::size_t samples,
                      const std::string& fit, int threads, const py::object& progress) {
   Listener listener(progress);
@@ -280,14 +249,10 @@ py::dict morphMeshes(const py::tuple& first, const py::tuple& second, const Inde
   for (py::ssize_t i = 0; i < rows.shape(0); ++i)
     options.pairs.push_back({rows(i, 0), rows(i, 1)});
   const SurfaceFit surface_fit = valueOf("fit", fit, kFitNames);
-  const MappedMesh from(first);
-  const MappedMesh to(second);
-  const auto surface = [&](const MappedMesh& mesh) {
-    return SphereSurface(mesh.points, mesh.triangles, mesh.directions,
-                         {surface_fit, threads, mesh.caps});
-  };
-  const MorphResult morph =
-      listener.run([&] { return morphSurfaces(surface(from), surface(to), options); });
+  const MorphResult morph = listener.run([&] {
+    return morphSurfaces(surfaceOf(first, surface_fit, threads),
+                         surfaceOf(second, surface_fit, threads), options);
+  });
   py::list impossible;
   for (const ImpossiblePair& pair : morph.impossible)
     impossible.append(py::dict("pair"_a = pair.pair, "reason"_a = pair.reason));
@@ -337,31 +302,28 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The part of spherical_param that is in C++; use the package's own functions.";
   module.attr("__version__") = SPHERICAL_PARAM_VERSION;
   registerErrors();
-  const auto points = py::arg("points").noconvert();
-  const auto triangles = py::arg("triangles").noconvert();
-  const auto sphere = py::arg("sphere").noconvert();
   module.def("option_table", &optionRows);
   module.def("result_table", &resultTable);
   module.attr("has_report") = hasReportPage();
-  module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "normals"_a,
-             "viewpoint"_a, "unused"_a, "details"_a, "progress"_a);
+  module.def("reconstruct", &reconstructPoints, "points"_a, "options"_a, py::kw_only(), "info"_a,
+             "details"_a, "progress"_a);
   module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "columns"_a, "progress"_a);
-  module.def("write_mesh", &writeMeshFile, "path"_a, points, triangles, "normals"_a, "colors"_a,
-             "added"_a, "scalars"_a, "offset"_a);
-  module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "options"_a,
-             py::kw_only(), "normals"_a, "viewpoint"_a, "unused"_a, "part"_a, "input"_a,
-             "command"_a, "progress"_a);
+  module.def("write_mesh", &writeMeshFile, "path"_a, "points"_a, "triangles"_a, "normals"_a,
+             "colors"_a, "added"_a, "scalars"_a, "offset"_a);
+  module.def("write_report", &writeReportFile, "path"_a, "points"_a, "colors"_a, "options"_a,
+             py::kw_only(), "info"_a, "part"_a, "input"_a, "command"_a, "progress"_a);
   module.def("morph", &morphMeshes, "first"_a, "second"_a, py::kw_only(), "pairs"_a, "align"_a,
              "connectivity"_a, "samples"_a, "fit"_a, "threads"_a, "progress"_a);
-  module.def("find_outliers", &findOutlierPoints, points, "options"_a, py::kw_only(), "progress"_a);
-  module.def("find_parts", &findPartsOfPoints, points, "options"_a, py::kw_only(), "progress"_a);
-  module.def("sphere_map", &mapToSphere, points, triangles, sphere, py::kw_only(), "area_weight"_a,
-             "sweeps"_a, "threads"_a, "progress"_a);
-  module.def("measure_map_distortion", &measureDistortion, points, triangles, sphere, py::kw_only(),
-             "threads"_a);
-  module.def("remesh", &remeshSurface, points, triangles, sphere, py::kw_only(),
-             py::arg("caps").noconvert(), "grid"_a, "count"_a, "fit"_a, "seed"_a, "threads"_a,
+  module.def("find_outliers", &findOutlierPoints, "points"_a, "options"_a, py::kw_only(),
              "progress"_a);
-  module.def("texture_coordinates", &textureAtlas, points, triangles, sphere, py::kw_only(),
-             "chart"_a, "margin"_a);
+  module.def("find_parts", &findPartsOfPoints, "points"_a, "options"_a, py::kw_only(),
+             "progress"_a);
+  module.def("sphere_map", &mapToSphere, "points"_a, "triangles"_a, "sphere"_a, py::kw_only(),
+             "area_weight"_a, "sweeps"_a, "threads"_a, "progress"_a);
+  module.def("measure_map_distortion", &measureDistortion, "points"_a, "triangles"_a, "sphere"_a,
+             py::kw_only(), "threads"_a);
+  module.def("remesh", &remeshSurface, "mesh"_a, py::kw_only(), "grid"_a, "count"_a, "fit"_a,
+             "seed"_a, "threads"_a, "progress"_a);
+  module.def("texture_coordinates", &textureAtlas, "points"_a, "triangles"_a, "sphere"_a,
+             py::kw_only(), "chart"_a, "margin"_a);
 }

@@ -27,13 +27,13 @@ namespace {
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-tools::PointData toPointData(const DoubleArray& points, const std::optional<DoubleArray>& normals,
-                             const std::optional<ByteArray>& colors,
+tools::PointData toPointData(const Positions& points, const std::optional<Positions>& normals,
+                             const std::optional<Array<std::uint8_t>>& colors,
                              const ScalarArrays& scalars = {}) {
   tools::PointData data;
-  data.points = tools::toPoints(toPositions(points));
+  data.points = tools::toPoints(points);
   if (normals)
-    data.normals = tools::toNormals(toPositions(*normals));
+    data.normals = tools::toNormals(*normals);
   if (colors) {
     const auto rows = colors->unchecked<2>();
     for (py::ssize_t i = 0; i < rows.shape(0); ++i)
@@ -70,26 +70,24 @@ py::dict readCloudFile(const std::string& path, const std::optional<std::string>
   py::dict scalars;
   for (const tools::Scalar& scalar : data.scalars)
     scalars[py::str(scalar.name)] = toArray(scalar.values);
-  return py::dict("points"_a = toArray(data.points),
-                  "normals"_a = data.normals.empty() ? py::object(py::none())
-                                                     : py::object(toArray(data.normals)),
-                  "colors"_a = data.colors.empty() ? py::object(py::none())
-                                                   : py::object(toArray(data.colors)),
-                  "scalars"_a = scalars, "unused"_a = toArray(data.unused),
-                  "viewpoint"_a = data.viewpoint ? py::object(py::cast(*data.viewpoint))
-                                                 : py::object(py::none()));
+  return py::dict(
+      "points"_a = toArray(data.points),
+      "normals"_a = data.normals.empty() ? py::object(py::none())
+                                         : py::object(firstColumns<double, 3>(data.normals)),
+      "colors"_a = data.colors.empty() ? py::object(py::none())
+                                       : py::object(firstColumns<std::uint8_t, 3>(data.colors)),
+      "scalars"_a = scalars, "unused"_a = toArray(data.unused), "viewpoint"_a = data.viewpoint);
 }
 
-tools::Point writeMeshFile(const std::string& path, const DoubleArray& points,
-                           const IndexArray& triangles, const std::optional<DoubleArray>& normals,
-                           const std::optional<ByteArray>& colors,
-                           const std::optional<ByteArray>& added, const ScalarArrays& scalars,
-                           const std::optional<tools::Point>& offset) {
-  const Triangles faces = toTriangles(triangles);
+tools::Point writeMeshFile(const std::string& path, const Positions& points,
+                           const Triangles& triangles, const std::optional<Positions>& normals,
+                           const std::optional<Array<std::uint8_t>>& colors,
+                           const std::optional<Array<std::uint8_t>>& added,
+                           const ScalarArrays& scalars, const std::optional<tools::Point>& offset) {
   const tools::FileFormat format = tools::requireFormat(
-      path, faces.cols() > 0 ? tools::FileUse::WriteMesh : tools::FileUse::WriteCloud);
+      path, triangles.cols() > 0 ? tools::FileUse::WriteMesh : tools::FileUse::WriteCloud);
   const tools::PointData data = toPointData(points, normals, colors, scalars);
-  tools::MeshView mesh(data, faces);
+  tools::MeshView mesh(data, triangles);
   const tools::Point taken_off =
       offset ? *offset : tools::offsetFor(data, format, tools::Encoding::Binary);
   mesh.shiftBy(taken_off);
@@ -106,25 +104,19 @@ bool hasReportPage() {
   return !tools::reportPage().empty();
 }
 
-void writeReportFile(const std::string& path, const DoubleArray& points,
-                     const std::optional<ByteArray>& colors, const py::dict& values,
-                     const std::optional<DoubleArray>& normals,
-                     const std::optional<std::array<double, 3>>& viewpoint,
-                     const std::optional<IndexArray>& unused, std::size_t part,
-                     const std::string& input, const std::string& command,
-                     const py::object& progress) {
+void writeReportFile(const std::string& path, const Positions& points,
+                     const std::optional<Array<std::uint8_t>>& colors, const py::dict& values,
+                     const py::dict& info, std::size_t part, const std::string& input,
+                     const std::string& command, const py::object& progress) {
   Listener listener(progress);
   tools::ReconstructionSettings settings;
-  settings.options = toOptions(values);
+  settings.options = toOptions(values, listener);
   tools::keepForHtmlReport(settings);
-  static_cast<Execution&>(settings.options) =
-      listener.execution(settings.options.threads, settings.options.time_limit);
   tools::CloudReconstruction cloud;
   cloud.data = std::make_shared<tools::PointData>(toPointData(points, std::nullopt, colors));
-  const Positions positions = toPositions(points);
-  const CloudInfo info = toCloudInfo(normals, viewpoint, unused);
+  const CloudInfo cloud_info = toCloudInfo(info);
   listener.run([&] {
-    cloud.result = reconstruct(positions, settings.options, {}, info);
+    cloud.result = reconstruct(points, settings.options, {}, cloud_info);
     cloud.stages = cloud.result.stages;
     const Surface& surface = cloud.result.surfaces.at(part);
     tools::OutputFile file(path);

@@ -1,8 +1,12 @@
 #include "python/options.h"
 
+#include "python/arrays.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
+#include <pybind11/stl.h>
+
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <string>
@@ -59,13 +63,28 @@ py::list optionRows() {
   return rows;
 }
 
-Options toOptions(const py::dict& values) {
+Options toOptions(const py::dict& values, Listener& listener) {
   Options options;
   for (const auto& [name, value] : values) {
     const OptionRow& row = findOption(name.cast<std::string>());
     setOption(options, row.name, toValue(row, value));
   }
+  static_cast<Execution&>(options) = listener.execution(options.threads, options.time_limit);
   return options;
+}
+
+CloudInfo toCloudInfo(const py::dict& info) {
+  CloudInfo result;
+  if (const py::object normals = info["normals"]; !normals.is_none())
+    result.normals = normals.cast<Positions>();
+  if (const py::object viewpoint = info["viewpoint"]; !viewpoint.is_none())
+    result.viewpoint =
+        Eigen::Map<const Eigen::Vector3d>(viewpoint.cast<std::array<double, 3>>().data());
+  if (const py::object unused = info["unused"]; !unused.is_none()) {
+    const auto rows = unused.cast<Array<Index>>();
+    result.unused.assign(rows.data(), rows.data() + rows.size());
+  }
+  return result;
 }
 
 }  // namespace spherical_param::python

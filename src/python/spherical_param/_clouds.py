@@ -46,6 +46,11 @@ class Cloud:
     unused: Optional[IndexArray] = None  #: rows in no face of the file
     scalars: dict[str, FloatArray] = field(default_factory=dict)  #: (n,) other numbers of the file
 
+    @property
+    def info(self) -> dict[str, Any]:
+        """What the core may know besides the points."""
+        return {"normals": self.normals, "viewpoint": self.viewpoint, "unused": self.unused}
+
 
 def read(
     name: str,

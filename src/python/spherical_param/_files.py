@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -34,18 +34,20 @@ def vertex_normals(points: FloatArray, triangles: IndexArray) -> FloatArray:
 class MeshExport:
     """What results that hold a mesh can be turned into."""
 
-    vertices: FloatArray
-    triangles: IndexArray
+    if TYPE_CHECKING:
+
+        @property
+        def vertices(self) -> FloatArray: ...
+        @property
+        def triangles(self) -> IndexArray: ...
+        @property
+        def normals(self) -> FloatArray: ...
+        @property
+        def colors(self) -> Optional[ByteArray]: ...
 
     def _export_points(self) -> FloatArray:
         """The points that the mesh has elsewhere."""
         return self.vertices
-
-    def _export_normals(self) -> FloatArray:
-        raise NotImplementedError
-
-    def _export_colors(self) -> Optional[ByteArray]:
-        raise NotImplementedError
 
     def _export_added(self) -> Optional[ByteArray]:
         """(v,) 1 for each vertex that was added to the points, else 0; None if none can be."""
@@ -65,8 +67,8 @@ class MeshExport:
         return trimesh.Trimesh(
             self._export_points(),
             self.triangles,
-            vertex_normals=self._export_normals(),
-            vertex_colors=self._export_colors(),
+            vertex_normals=self.normals,
+            vertex_colors=self.colors,
             process=False,
         )
 
@@ -78,20 +80,18 @@ class MeshExport:
             open3d.utility.Vector3dVector(self._export_points()),
             open3d.utility.Vector3iVector(self.triangles),
         )
-        mesh.vertex_normals = open3d.utility.Vector3dVector(self._export_normals())
-        colors = self._export_colors()
-        if colors is not None:
-            mesh.vertex_colors = open3d.utility.Vector3dVector(colors / 255)
+        mesh.vertex_normals = open3d.utility.Vector3dVector(self.normals)
+        if self.colors is not None:
+            mesh.vertex_colors = open3d.utility.Vector3dVector(self.colors / 255)
         return mesh
 
     def to_meshio(self) -> Any:
         """The mesh as a ``meshio.Mesh``. Raises ImportError without meshio."""
         import meshio
 
-        data: dict[str, Any] = {"normals": self._export_normals()}
-        colors = self._export_colors()
-        if colors is not None:
-            data["colors"] = colors
+        data: dict[str, Any] = {"normals": self.normals}
+        if self.colors is not None:
+            data["colors"] = self.colors
         return meshio.Mesh(
             self._export_points(), [("triangle", self.triangles)], point_data=data
         )
@@ -134,8 +134,8 @@ class MeshExport:
             os.fsencode(path),
             np.ascontiguousarray(self._export_points()),
             np.ascontiguousarray(self.triangles),
-            np.ascontiguousarray(self._export_normals()),
-            self._export_colors(),
+            np.ascontiguousarray(self.normals),
+            self.colors,
             added if added is not None and added.any() else None,
             self._export_scalars(),
             offset,
@@ -163,7 +163,7 @@ class MeshExport:
             else:
                 faces = np.insert(self.triangles, 0, 3, axis=1)
                 pyvista.PolyData(self._export_points(), faces.ravel()).plot(
-                    scalars=self._export_colors(), rgb=True
+                    scalars=self.colors, rgb=True
                 )
                 return
         self._plot()
@@ -171,7 +171,7 @@ class MeshExport:
     def _plot(self) -> None:
         import matplotlib.pyplot as pyplot
 
-        points, colors = self._export_points(), self._export_colors()
+        points, colors = self._export_points(), self.colors
         axes: Any = pyplot.figure().add_subplot(projection="3d")
         axes.set_box_aspect(np.ptp(points, axis=0) + 1e-300)
         if len(self.triangles):

@@ -65,6 +65,10 @@ class SphereMap:
     levels: tuple[SphereMapLevel, ...]  #: finest first
     colors: Optional[ByteArray] = None  #: (v, 3), if the points of the mesh had some
 
+    @property
+    def _arrays(self) -> tuple[FloatArray, IndexArray, FloatArray, FloatArray]:
+        return self.vertices, self.triangles, self.directions, self.caps
+
     def interpolate(
         self, values: ArrayLike, triangles: IndexArray, weights: FloatArray
     ) -> FloatArray:
@@ -251,12 +255,6 @@ class Remeshed(MeshExport):
             return None
         return np.rint(self.transfer(self.map.colors)).astype(np.uint8)
 
-    def _export_normals(self) -> FloatArray:
-        return self.normals
-
-    def _export_colors(self) -> Optional[ByteArray]:
-        return self.colors
-
     def transfer(self, values: ArrayLike) -> FloatArray:
         """Carry values from the vertices of ``map`` to these vertices.
 
@@ -365,8 +363,7 @@ def remesh(
     )
     with listening(progress) as listener:
         fields = _core.remesh(
-            *_mesh(mapped, None, None),
-            caps=mapped.caps,
+            mapped._arrays,
             grid=grid,
             count=len(mapped.vertices) if count is None else count,
             fit=fit,

@@ -43,12 +43,6 @@ class MorphFrame(MeshExport):
         """(w, 3) of the mesh, weighted by angles."""
         return vertex_normals(self.vertices, self.triangles)
 
-    def _export_normals(self) -> FloatArray:
-        return self.normals
-
-    def _export_colors(self) -> Optional[ByteArray]:
-        return self.colors
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Morph:
@@ -155,7 +149,7 @@ def morph(
         maps.append(shape)
     with listening(progress) as listener:
         fields = _core.morph(
-            *((each.vertices, each.triangles, each.directions, each.caps) for each in maps),
+            *(each._arrays for each in maps),
             pairs=_pairs(pairs),
             align=align == "rotation",
             connectivity=connectivity,

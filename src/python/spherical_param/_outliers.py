@@ -113,4 +113,5 @@ def find_parts(
             "min_points": min_points,
             "threads": arguments.thread_count(threads),
         }
-        return _core.find_parts(cloud.points, values, progress=listener)
+        parts: tuple[IndexArray, ...] = _core.find_parts(cloud.points, values, progress=listener)
+    return parts

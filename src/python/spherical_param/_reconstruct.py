@@ -86,13 +86,7 @@ OPTIONS
     with listening(progress) as listener:
         cloud = read("points", points, listener, columns)
         fields = _core.reconstruct(
-            cloud.points,
-            values,
-            normals=cloud.normals,
-            viewpoint=cloud.viewpoint,
-            unused=cloud.unused,
-            details=has_details,
-            progress=listener,
+            cloud.points, values, info=cloud.info, details=has_details, progress=listener
         )
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)

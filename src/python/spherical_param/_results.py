@@ -90,12 +90,6 @@ class Result(Surface, MeshExport):
             return given[self.input_of_vertex]
         return vertex_normals(self._export_points(), self.triangles)
 
-    def _export_normals(self) -> FloatArray:
-        return self.normals
-
-    def _export_colors(self) -> Optional[ByteArray]:
-        return self.colors
-
     def _export_scalars(self) -> dict[str, FloatArray]:
         scalars = self._source.cloud.scalars
         return {name: values[self.input_of_vertex] for name, values in scalars.items()}
@@ -142,9 +136,7 @@ class Result(Surface, MeshExport):
                 source.cloud.points,
                 source.cloud.colors,
                 {**source.options, "threads": threads},
-                normals=source.cloud.normals,
-                viewpoint=source.cloud.viewpoint,
-                unused=source.cloud.unused,
+                info=source.cloud.info,
                 part=source.part,
                 input=source.cloud.name or "points",
                 command=source.command,
@@ -198,12 +190,12 @@ class Results(tuple[Result, ...], MeshExport):
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
 
     @cached_property
-    def vertices(self) -> FloatArray:  # type: ignore[override]
+    def vertices(self) -> FloatArray:
         """(v, 3) of all surfaces [unit of the input]."""
         return np.concatenate([each.vertices for each in self])
 
     @cached_property
-    def triangles(self) -> IndexArray:  # type: ignore[override]
+    def triangles(self) -> IndexArray:
         """(t, 3) of all surfaces, into ``vertices``."""
         first = np.cumsum([0] + [len(each.vertices) for each in self])
         moved = [each.triangles + at for each, at in zip(self, first)]
@@ -231,12 +223,6 @@ class Results(tuple[Result, ...], MeshExport):
 
     def _export_points(self) -> FloatArray:
         return np.concatenate([each._export_points() for each in self])
-
-    def _export_normals(self) -> FloatArray:
-        return self.normals
-
-    def _export_colors(self) -> Optional[ByteArray]:
-        return self.colors
 
     def _export_added(self) -> ByteArray:
         return np.concatenate([each._export_added() for each in self])
