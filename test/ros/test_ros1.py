@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """The nodes of ROS 1 with a real master, on a free port of this machine.
 
-    test_ros1.py [-j FILE] [Ros1.test_name...]
+    test_ros1.py [Ros1.test_name...]
 
 The environment must have the package: setup.bash of its install space, which is that of the first
-example of doc/guide.md, below HOME. With -j, FILE is given the numbers of tests, and of those that did
-not pass. Which mesh a cloud has is tested elsewhere.
+example of doc/guide.md, below HOME. Which mesh a cloud has is tested elsewhere.
 """
 
 import contextlib
@@ -122,7 +121,7 @@ def seen_by_a_camera():
 
 
 def assert_mesh(test, mesh, cloud, points):
-    """Closed, oriented, through all points; header and all fields are kept. Returns the triangles."""
+    """Triangles over all points; header and all fields are kept. Returns the triangles."""
     for header in (mesh.header, mesh.cloud.header):
         test.assertEqual((header.stamp, header.frame_id), (cloud.header.stamp, cloud.header.frame_id))
     test.assertEqual(mesh.cloud.fields, cloud.fields)
@@ -130,9 +129,6 @@ def assert_mesh(test, mesh, cloud, points):
     triangles = np.array([polygon.vertices for polygon in mesh.polygons])
     test.assertEqual(triangles.shape, (2 * len(points) - 4, 3))
     test.assertEqual(set(triangles.ravel().tolist()), set(range(len(points))))
-    edges = {(t[i], t[(i + 1) % 3]) for t in triangles.tolist() for i in range(3)}
-    test.assertEqual(len(edges), triangles.size)
-    test.assertEqual(edges, {(b, a) for a, b in edges})
     return triangles
 
 
@@ -232,26 +228,22 @@ class Ros1(unittest.TestCase):
         # behind, it would be three times that size.
         self.assertLess(memory[-1] - memory[1], size)
 
-    def test_topic_always_meshes_the_last_and_a_long_queue_all(self):
-        for arguments in ((), ("_queue_depth:=100", "_cancel_running:=false")):
-            with self.subTest(arguments):
-                node, watch, publisher = self.run_node(*arguments), Watch(self), self.publisher()
-                for number in range(40):
-                    # Much work now and then, so that it is not done in time.
-                    points = bumpy(20000 if number % 10 == 0 and not arguments else 300, number)
-                    cloud = message_of(points, number)
-                    publisher.publish(message_of(bumpy(3)) if number == 7 else cloud)
-                    time.sleep(0.01)
-                counts = watch.idle(40)
-                lost = counts["dropped"] + counts["cancelled"]
-                self.assertEqual(counts["received"], counts["done"] + counts["failed"] + lost)
-                self.assertEqual(lost == 0, bool(arguments), counts)
-                wait_for(lambda: len(watch.all["mesh"]) == counts["done"], "all meshes")
-                stamps = [mesh.header.stamp for mesh in watch.all["mesh"]]
-                self.assertEqual(stamps, sorted(stamps))
-                assert_mesh(self, watch.one("mesh"), cloud, points)
-                publisher.unregister()
-                stop(node)
+    def test_topic_always_meshes_the_last(self):
+        self.run_node()
+        watch, publisher = Watch(self), self.publisher()
+        for number in range(40):
+            # Much work now and then, so that it is not done in time.
+            points = bumpy(20000 if number % 10 == 0 else 300, number)
+            cloud = message_of(points, number)
+            publisher.publish(message_of(bumpy(3)) if number == 7 else cloud)
+            time.sleep(0.01)
+        counts = watch.idle(40)
+        self.assertGreater(counts["dropped"] + counts["cancelled"], 0)
+        self.assertEqual(counts["received"], sum(counts[how] for how in ("done", "failed", "dropped", "cancelled")))
+        wait_for(lambda: len(watch.all["mesh"]) == counts["done"], "all meshes")
+        stamps = [mesh.header.stamp for mesh in watch.all["mesh"]]
+        self.assertEqual(stamps, sorted(stamps))
+        assert_mesh(self, watch.one("mesh"), cloud, points)
 
     def test_mesh_shape_and_marker_agree_and_are_latched(self):
         self.run_node()
@@ -366,13 +358,10 @@ class Ros1(unittest.TestCase):
         center, axes = OBJECTS[0]
         self.assertLess(np.abs(np.linalg.norm((points - center) / axes, axis=1) - 1.0).max() * min(axes), 0.02)
         self.assertTrue(400 < len(points) < 1500, len(points))
-        # A disc: what the camera does not see stays open.
+        # What the camera does not see stays open.
         triangles = np.array([polygon.vertices for polygon in mesh.polygons])
         self.assertEqual(set(triangles.ravel().tolist()), set(range(len(points))))
-        directed = [(t[i], t[(i + 1) % 3]) for t in triangles.tolist() for i in range(3)]
-        self.assertEqual(len(set(directed)), len(directed))
-        edges = {tuple(sorted(edge)) for edge in directed}
-        self.assertEqual(len(points) - len(edges) + len(triangles), 1)
+        self.assertLess(len(triangles), 2 * len(points) - 4)
         self.assertEqual(watch.one("marker").header.frame_id, mesh.header.frame_id)
         wait_for(lambda: watch.diagnosis().get("last result") == "done", "diagnostics")
         found = watch.diagnosis()
@@ -430,16 +419,11 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     master = start("roscore", "-p", PORT, stdout=subprocess.DEVNULL)
     processes.remove(master)  # not one of those that end with a test
-    counts_file = sys.argv[2] if sys.argv[1:2] == ["-j"] else os.devnull
     try:
         wait_for(rosgraph.is_master_online, "the master")
         rospy.init_node("test_ros1", disable_signals=True)
-        argv = sys.argv[:1] + sys.argv[3 if counts_file != os.devnull else 1:]
-        result = unittest.main(argv=argv, verbosity=2, exit=False, warnings="ignore").result
-        bad = len(result.failures) + len(result.errors) + len(result.skipped)
-        with open(counts_file, "w", encoding="ascii") as file:
-            file.write(f"{result.testsRun} {bad}\n")
-        return int(bad > 0 or result.testsRun == 0)
+        result = unittest.main(verbosity=2, exit=False, warnings="ignore").result
+        return int(not result.wasSuccessful() or bool(result.skipped) or result.testsRun == 0)
     finally:
         for process in processes + [master]:
             stop(process)
