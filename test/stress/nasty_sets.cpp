@@ -1,12 +1,14 @@
 #include "nasty_sets.h"
 
-#include "random.h"
+#include "guarantees.h"
+#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -270,6 +272,28 @@ void treat(Random& random, Points& points) {
 
 }  // namespace
 
+spherical_param::Options someOptions(Random& random, bool is_large) {
+  using namespace spherical_param;
+  const auto one = [&random](int count) { return random.integer(0, count - 1); };
+  Options options;
+  options.topology = TopologyMode::Sphere;
+  options.threads = 1;
+  if (one(2) == 0)
+    return withTopology(options);
+  options.method = one(3) == 0 ? Method::Paper : Method::Default;
+  options.paper.weights = static_cast<EdgeWeights>(one(3));
+  options.paper.k = 3 + one(30);
+  options.paper.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
+  options.smoothing = one(3) == 0 ? one(30) : 0;
+  options.embedding.starts = 1 + one(3);
+  options.seed = static_cast<std::uint32_t>(one(1000000));
+  options.details = one(4) == 0;
+  options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(4)) : OutlierMode::None;
+  options.parts = one(5) == 0 ? static_cast<PartsMode>(one(4)) : PartsMode::All;
+  options.min_points = 4 + one(60);
+  return withTopology(options);
+}
+
 NastySet makeNastySet(std::uint64_t seed) {
   Random random(seed);
   // In turns, so that each is tried as often.
@@ -281,7 +305,31 @@ NastySet makeNastySet(std::uint64_t seed) {
   set.points.resize(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     set.points.col(static_cast<Eigen::Index>(i)) = points[i];
+  set.options = someOptions(random, points.size() > 600);
   return set;
+}
+
+Answer answerTo(const NastySet& set, int threads,
+                const spherical_param::NeighborSearchFactory& search_of) {
+  Answer answer;
+  spherical_param::Options options = set.options;
+  options.threads = threads;
+  try {
+    answer.result = reconstruct(set.points, options, search_of);
+    answer.bytes = bytesOf(answer.result);
+    answer.fault = canBeMeshed(set.points) ? faultOfLists(set.points, options, answer.result)
+                                           : "points that cannot be meshed are accepted";
+    for (const spherical_param::Surface& surface : answer.result.surfaces)
+      if (answer.fault.empty())
+        answer.fault = faultOf(set.points, options, surface);
+  } catch (const spherical_param::InvalidInput& error) {
+    answer.bytes = error.what();
+    if (mustBeMeshed(set.points, options))
+      answer.fault = "rejected: " + answer.bytes;
+  } catch (const std::exception& error) {
+    answer.fault = std::string("not a documented exception: ") + error.what();
+  }
+  return answer;
 }
 
 }  // namespace stress

@@ -6,8 +6,6 @@
 #include "helpers.h"
 #include "nasty_sets.h"
 #include "random.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/reconstruct.h"
 #include "stress.h"
 
 #include <vtkCellArray.h>
@@ -22,7 +20,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <string>
 #include <thread>
 #include <utility>
@@ -56,56 +53,19 @@ bool isClosedForVtk(const Triangles& triangles, Index vertices) {
   return edges->GetOutput()->GetNumberOfCells() == 0 && regions->GetNumberOfExtractedRegions() == 1;
 }
 
-/// The defaults for half of the sets.
-Options someOptions(stress::Random& random, bool is_large) {
-  const auto one = [&random](int count) { return random.integer(0, count - 1); };
-  Options options;
-  options.topology = TopologyMode::Sphere;
-  if (one(2) == 0)
-    return options;
-  options.method = one(3) == 0 ? Method::Paper : Method::Default;
-  options.paper.weights = static_cast<EdgeWeights>(one(3));
-  options.paper.k = 3 + one(30);
-  options.paper.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
-  options.smoothing = one(3) == 0 ? one(30) : 0;
-  options.embedding.starts = 1 + one(3);
-  options.seed = static_cast<std::uint32_t>(one(1000000));
-  options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(4)) : OutlierMode::None;
-  options.parts = one(5) == 0 ? static_cast<PartsMode>(one(4)) : PartsMode::All;
-  options.min_points = 4 + one(60);
-  return options;
-}
-
 /// What is wrong with the answer to a set; empty if nothing is.
-std::string tryOut(const Positions& points, std::uint64_t seed) {
+std::string tryOut(const stress::NastySet& set, std::uint64_t seed) {
   stress::Random random(seed ^ 0x5eedULL);
-  Options options = withTopology(someOptions(random, points.cols() > 600));
   const NeighborSearchFactory search_of =
-      random.chance(0.4) ? test::bruteForceFactory(points) : NeighborSearchFactory();
-  options.threads = 1;
-  try {
-    const Result result = reconstruct(points, options, search_of);
-    if (!stress::canBeMeshed(points))
-      return "points that cannot be meshed are accepted";
-    std::string fault = stress::faultOfLists(points, options, result);
-    for (const Surface& surface : result.surfaces) {
-      if (fault.empty())
-        fault = stress::faultOf(points, options, surface);
-      if (fault.empty() &&
-          !isClosedForVtk(surface.triangles, static_cast<Index>(surface.vertexCount())))
-        fault = "VTK takes the mesh for open, no manifold, or several pieces";
-    }
-    if (!fault.empty())
-      return fault;
-    options.threads = 3;
-    if (random.chance(0.25) &&
-        stress::bytesOf(result) != stress::bytesOf(reconstruct(points, options, search_of)))
-      return "other bytes with 3 threads";
-  } catch (const InvalidInput& error) {
-    return stress::mustBeMeshed(points, options) ? std::string("rejected: ") + error.what() : "";
-  } catch (const std::exception& error) {
-    return std::string("not a documented exception: ") + error.what();
-  }
+      random.chance(0.4) ? test::bruteForceFactory(set.points) : NeighborSearchFactory();
+  const stress::Answer answer = stress::answerTo(set, 1, search_of);
+  if (!answer.fault.empty())
+    return answer.fault;
+  for (const Surface& surface : answer.result.surfaces)
+    if (!isClosedForVtk(surface.triangles, static_cast<Index>(surface.vertexCount())))
+      return "VTK takes the mesh for open, no manifold, or several pieces";
+  if (random.chance(0.25) && answer.bytes != stress::answerTo(set, 3, search_of).bytes)
+    return "other bytes with 3 threads";
   return "";
 }
 
@@ -145,7 +105,7 @@ int main(int argc, char** argv) {
   const auto work = [&](std::size_t) {
     for (std::size_t i = next++; i < sets; i = next++) {
       const stress::NastySet set = stress::makeNastySet(arguments.seed + i);
-      const std::string fault = tryOut(set.points, arguments.seed + i);
+      const std::string fault = tryOut(set, arguments.seed + i);
       if (fault.empty())
         continue;
       ++found;
