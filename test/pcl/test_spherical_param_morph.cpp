@@ -39,6 +39,7 @@ TEST_F(SphericalParamMorph, FramesAreClosedAndLeadFromOneToTheOther) {
   for (const pcl::PolygonMesh& mesh : output) {
     EXPECT_TRUE(test::isSphere(mesh.polygons, test::cloudOf<PointXYZ>(mesh.cloud).size()));
     EXPECT_EQ(mesh.header.frame_id, "scanner");
+    EXPECT_EQ(mesh.cloud.header.frame_id, "scanner");
   }
   const auto has_all = [](const pcl::PolygonMesh& mesh, const Cloud& points) {
     const Cloud cloud = test::cloudOf<PointXYZ>(mesh.cloud);
