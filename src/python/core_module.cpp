@@ -6,7 +6,6 @@
 #include "python/arrays.h"
 #include "python/files.h"
 #include "python/listener.h"
-#include "python/names.h"
 #include "python/options.h"
 #include "python/reports.h"
 #include "spherical_param/errors.h"
@@ -30,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -41,6 +41,25 @@ namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
+
+/// The names of the map's enumerators in Python. Those of options and results of reconstruct() are
+/// in optionTable() and result_fields.h.
+template <typename Enum>
+using Names = std::initializer_list<std::pair<const char*, Enum>>;
+
+/// The package in Python has checked that it is one of the names.
+template <typename Enum>
+Enum valueOf(const std::string& name, Names<Enum> names) {
+  for (const auto& [candidate, value] : names)
+    if (name == candidate)
+      return value;
+  throw InvalidInput("'" + name + "' is not known");
+}
+
+SurfaceFit fitOf(const std::string& name) {
+  return valueOf<SurfaceFit>(name,
+                             {{"smooth", SurfaceFit::Smooth}, {"linear", SurfaceFit::Linear}});
+}
 
 /// The core's messages begin with the name of a function in C++.
 std::string withoutFunctionName(const std::string& message) {
@@ -125,11 +144,6 @@ struct Remeshed {
 
 Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t points,
                       int threads, Listener& listener) {
-  // The grid itself would take as many as it can have.
-  constexpr std::size_t max_points = std::size_t{1} << 28;
-  if (points < 4 || points > max_points)
-    throw InvalidInput("points = " + std::to_string(points) +
-                       " is out of range; use 4 to 2^28 for a grid");
   Remeshed result;
   const GridSphere grid = makeGridSphere(kind, gridFrequency(kind, points, surface));
   result.frequency = grid.frequency;
@@ -151,10 +165,6 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
 
 Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uint32_t seed,
                       Listener& listener) {
-  constexpr std::size_t max_points = std::size_t{1} << 24;
-  if (points < 1 || points > max_points)
-    throw InvalidInput("points = " + std::to_string(points) +
-                       " is out of range; use 1 to 2^24 for an even cloud");
   Remeshed result;
   SurfacePoints even = sampleEvenly(surface, points, seed);
   listener.step("resample", 1.0);
@@ -178,13 +188,8 @@ py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::siz
                        const std::string& fit, std::uint32_t seed, int threads,
                        const py::object& progress) {
   const bool is_even = grid == "even";
-  constexpr Names<SphereGrid, 3> grid_names = {{
-      {"icosahedral", SphereGrid::Icosahedral},
-      {"octahedral", SphereGrid::Octahedral},
-      {"even", SphereGrid::Icosahedral},  // not used
-  }};
-  const SphereGrid kind = valueOf("grid", grid, grid_names);
-  const SurfaceFit surface_fit = valueOf("fit", fit, kFitNames);
+  const SphereGrid kind = grid == "octahedral" ? SphereGrid::Octahedral : SphereGrid::Icosahedral;
+  const SurfaceFit surface_fit = fitOf(fit);
   Listener listener(progress);
   const Remeshed remeshed = listener.run([&] {
     listener.step("surface", 0.0);
@@ -211,7 +216,9 @@ py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::siz
 py::dict textureAtlas(const std::optional<Positions>& points, const Triangles& triangles,
                       const Positions& sphere, const std::string& chart, double margin) {
   TextureAtlasOptions options;
-  options.chart = valueOf("chart", chart, kChartNames);
+  options.chart = valueOf<SphereChart>(chart, {{"octahedral", SphereChart::Octahedral},
+                                               {"equirectangular", SphereChart::Equirectangular},
+                                               {"cube", SphereChart::CubeMap}});
   options.margin = margin;
   Listener listener(py::none{});
   const TextureAtlas atlas = listener.run([&] {
@@ -243,12 +250,14 @@ py::dict morphMeshes(const MappedMesh& first, const MappedMesh& second, const Ar
   MorphOptions options;
   static_cast<Execution&>(options) = listener.execution(threads);
   options.align = align;
-  options.connectivity = valueOf("connectivity", connectivity, kConnectivityNames);
+  options.connectivity =
+      valueOf<MorphConnectivity>(connectivity, {{"all", MorphConnectivity::AllVertices},
+                                                {"resampled", MorphConnectivity::Resampled}});
   options.samples = samples;
   const auto rows = pairs.unchecked<2>();
   for (py::ssize_t i = 0; i < rows.shape(0); ++i)
     options.pairs.push_back({rows(i, 0), rows(i, 1)});
-  const SurfaceFit surface_fit = valueOf("fit", fit, kFitNames);
+  const SurfaceFit surface_fit = fitOf(fit);
   const MorphResult morph = listener.run([&] {
     return morphSurfaces(surfaceOf(first, surface_fit, threads),
                          surfaceOf(second, surface_fit, threads), options);

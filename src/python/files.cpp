@@ -11,7 +11,6 @@
 #include "common/reconstruction_report.h"
 #include "common/report_page.h"
 #include "python/listener.h"
-#include "python/names.h"
 #include "python/options.h"
 #include "spherical_param/version.h"
 

@@ -22,78 +22,20 @@ KeyboardInterrupt at Ctrl-C. Errors are ``InvalidInput``, a ValueError, ``Comput
 ``Cancelled``.
 """
 
+from . import _errors, _figures, _maps, _morph, _outliers, _results
 from ._core import __version__
-from ._errors import Cancelled, ComputeError, InvalidInput
-from ._figures import (
-    Consolidation,
-    Diagnosis,
-    Embedding,
-    EmbeddingLevel,
-    Finding,
-    Handle,
-    HandleLoop,
-    History,
-    HistoryFrame,
-    Measures,
-    Opening,
-    PartBridge,
-    Smoothing,
-    Topology,
-)
-from ._maps import (
-    Distortion,
-    Remeshed,
-    SphereMap,
-    SphereMapLevel,
-    Statistics,
-    TextureCoordinates,
-    measure_map_distortion,
-    remesh,
-    sphere_map,
-    texture_coordinates,
-)
-from ._morph import ImpossiblePair, Morph, MorphFrame, morph
-from ._outliers import Outliers, find_outliers, find_parts
+from ._errors import *
+from ._figures import *
+from ._maps import *
+from ._morph import *
+from ._outliers import *
 from ._reconstruct import reconstruct
-from ._results import Result, TriangleMark
+from ._results import *
 
-__all__ = [
-    "Cancelled",
-    "ComputeError",
-    "Consolidation",
-    "Diagnosis",
-    "Distortion",
-    "Embedding",
-    "EmbeddingLevel",
-    "Finding",
-    "Handle",
-    "HandleLoop",
-    "History",
-    "HistoryFrame",
-    "ImpossiblePair",
-    "InvalidInput",
-    "Measures",
-    "Morph",
-    "MorphFrame",
-    "Opening",
-    "Outliers",
-    "PartBridge",
-    "Remeshed",
-    "Result",
-    "Smoothing",
-    "SphereMap",
-    "SphereMapLevel",
-    "Statistics",
-    "TextureCoordinates",
-    "Topology",
-    "TriangleMark",
-    "__version__",
-    "find_outliers",
-    "find_parts",
-    "measure_map_distortion",
-    "morph",
-    "reconstruct",
-    "remesh",
-    "sphere_map",
-    "texture_coordinates",
-]
+__all__ = ["__version__", "reconstruct"]
+__all__ += _errors.__all__
+__all__ += _figures.__all__
+__all__ += _maps.__all__
+__all__ += _morph.__all__
+__all__ += _outliers.__all__
+__all__ += _results.__all__

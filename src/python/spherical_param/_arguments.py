@@ -96,13 +96,6 @@ def real(name: str, value: SupportsFloat) -> float:
         raise InvalidInput(f"{name} = {value!r} is not a number; give one") from None
 
 
-def text(name: str, value: str) -> str:
-    """The name of a choice; the core checks it."""
-    if not isinstance(value, str):
-        raise InvalidInput(f"{name} = {value!r} is not a text; give the name of a choice")
-    return value
-
-
 def truth(name: str, value: bool) -> bool:
     """A flag; other values that count as true, such as a text, are mostly mistakes."""
     if not isinstance(value, (bool, np.bool_)):
@@ -112,7 +105,7 @@ def truth(name: str, value: bool) -> bool:
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> str:
     """The name of a choice, checked before long work."""
-    if text(name, value) not in choices:
+    if not isinstance(value, str) or value not in choices:
         known = ", ".join(repr(known) for known in choices)
         raise InvalidInput(f"{name} = {value!r} is not known; use one of {known}")
     return value

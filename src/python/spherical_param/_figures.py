@@ -42,12 +42,18 @@ def _attributes(row: _Row) -> str:
     return "\n".join(lines)
 
 
+def _public(table: list[_Row]) -> list[str]:
+    """The classes but those that Result and Results are made of."""
+    return [row["name"] for row in table if row["name"] not in ("LeftOut", "Surface")]
+
+
 def stub(table: list[_Row]) -> str:
     """What type checkers read of this file."""
     text = (
         "from dataclasses import dataclass\n"
         "from typing import Any, Literal, Optional\n\n"
         "from ._arguments import ByteArray, FloatArray, IndexArray\n\n"
+        f"__all__ = {_public(table)!r}\n\n"
         "def attributes(name: str) -> str: ...\n"
         "def make(name: str, fields: dict[str, Any]) -> dict[str, Any]: ...\n"
     )
@@ -73,6 +79,7 @@ else:
     from ._arguments import ByteArray, FloatArray, IndexArray  # noqa: F401
 
     _ROWS = {row["name"]: row for row in _core.result_table()}
+    __all__ = _public(list(_ROWS.values()))
 
     for _name, _row in _ROWS.items():
         globals()[_name] = make_dataclass(

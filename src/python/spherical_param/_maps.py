@@ -17,6 +17,19 @@ from ._files import MeshExport
 from ._progress import Progress, listening
 from ._results import Result
 
+__all__ = [
+    "Distortion",
+    "Remeshed",
+    "SphereMap",
+    "SphereMapLevel",
+    "Statistics",
+    "TextureCoordinates",
+    "measure_map_distortion",
+    "remesh",
+    "sphere_map",
+    "texture_coordinates",
+]
+
 GridName = Literal["icosahedral", "octahedral", "even"]
 FitName = Literal["smooth", "linear"]
 ChartName = Literal["octahedral", "equirectangular", "cube"]
@@ -431,7 +444,7 @@ def texture_coordinates(
         points if isinstance(mesh, Result) else None,
         mesh.triangles,
         sphere,
-        chart=arguments.text("chart", chart),
+        chart=arguments.choice("chart", chart, get_args(ChartName)),
         margin=arguments.real("margin", margin),
     )
     corners = points[fields["source_vertices"]]

@@ -18,6 +18,8 @@ from ._maps import FitName, SphereMap, sphere_map
 from ._progress import Progress, listening
 from ._results import Result
 
+__all__ = ["ImpossiblePair", "Morph", "MorphFrame", "morph"]
+
 AlignName = Literal["rotation", "none"]
 ConnectivityName = Literal["all", "resampled"]
 

@@ -14,6 +14,8 @@ from ._clouds import CloudLike
 from ._errors import InvalidInput
 from ._progress import Progress, listening
 
+__all__ = ["Outliers", "find_outliers", "find_parts"]
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Outliers:

@@ -23,6 +23,8 @@ from ._figures import Finding, LeftOut, Surface, attributes, make
 from ._files import MeshExport, vertex_normals
 from ._progress import Progress, listening
 
+__all__ = ["Result", "TriangleMark"]
+
 
 class TriangleMark(IntFlag):
     """Faults at a triangle: ``Diagnosis.triangle_marks`` has the sum for each triangle.
