@@ -11,11 +11,12 @@ python=/usr/bin/python3
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
+typed() {
+  MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict --cache-dir "$work/mypy" "$@"
+}
+
 strictly_typed() {
-  MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
-    --cache-dir "$work/mypy" -p spherical_param &&
-    MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
-      --cache-dir "$work/mypy" src/python/examples/*.py
+  typed -p spherical_param && typed src/python/examples/*.py
 }
 
 # mypy must find wrong use.
@@ -31,8 +32,7 @@ both = spherical_param.reconstruct("scan.ply", parts="each")
 both.vertices
 good: spherical_param.Result = spherical_param.reconstruct("scan.ply", parts="largest")
 END
-  MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
-    --cache-dir "$work/mypy" "$work/wrong.py" >"$work/wrong.log" && return 1
+  typed "$work/wrong.py" >"$work/wrong.log" && return 1
   cat "$work/wrong.log"
   [ "$(grep -c '^[^ ]*wrong.py:[356]: error' "$work/wrong.log")" -eq 3 ] &&
     ! grep -q 'wrong.py:[89]:' "$work/wrong.log"

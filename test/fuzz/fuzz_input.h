@@ -1,6 +1,5 @@
 #pragma once
 
-#include "graphs.h"
 #include "guarantees.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
@@ -182,11 +181,6 @@ inline Positions pointsFrom(Bytes& bytes) {
 inline Positions tamed(const Positions& points) {
   return points.unaryExpr(
       [](double x) { return std::isfinite(x) ? std::clamp(x, -1e150, 1e150) : 0.0; });
-}
-
-/// The nearest other points, by brute force.
-inline NeighborLists nearest(const Positions& points, int k) {
-  return spherical_param::test::bruteForceNeighbors(tamed(points), k);
 }
 
 /// Lists of `count` points, in range or not.
