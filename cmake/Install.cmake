@@ -12,15 +12,12 @@ set(spherical_param_components core)
 if(SPHERICAL_PARAM_BUILD_PCL)
   list(APPEND spherical_param_components pcl)
 endif()
+set(targets_of_core spherical_param_core spherical_param_map)
+set(headers_of_core spherical_param)
+set(targets_of_pcl pcl_spherical_param)
+set(headers_of_pcl pcl)
 foreach(component IN LISTS spherical_param_components)
-  if(component STREQUAL "core")
-    set(targets spherical_param_core spherical_param_map)
-    set(header_dir spherical_param)
-  else()
-    set(targets pcl_spherical_param)
-    set(header_dir pcl)
-  endif()
-  install(TARGETS ${targets} EXPORT pcl_spherical_param_${component}
+  install(TARGETS ${targets_of_${component}} EXPORT pcl_spherical_param_${component}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}_dev
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
             NAMELINK_COMPONENT ${component}_dev
@@ -30,7 +27,7 @@ foreach(component IN LISTS spherical_param_components)
     FILE pcl_spherical_param-${component}-targets.cmake
     DESTINATION ${package_dir}
     COMPONENT ${component}_dev)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/${header_dir}
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/${headers_of_${component}}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
     COMPONENT ${component}_dev
     FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
@@ -82,11 +79,7 @@ else()
   set(PKGCONFIG_CORE_PRIVATE_LIBS "")
 endif()
 foreach(component IN LISTS spherical_param_components)
-  if(component STREQUAL "core")
-    set(name spherical_param_core)
-  else()
-    set(name pcl_spherical_param)
-  endif()
+  list(GET targets_of_${component} 0 name)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/${name}.pc.in
                  ${PROJECT_BINARY_DIR}/package/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/package/${name}.pc

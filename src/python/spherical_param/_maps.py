@@ -356,11 +356,8 @@ def remesh(
     arguments.choice("grid", grid, get_args(GridName))
     arguments.choice("fit", fit, get_args(FitName))
     random_seed = arguments.integer("seed", seed, 0, 2**32 - 1)
-    count = None if points is None else arguments.integer("points", points)
-    most = 2**24 if grid == "even" else 2**28
-    least = 1 if grid == "even" else 4
-    if count is not None and not least <= count <= most:
-        raise InvalidInput(f"points = {count} is out of range; use {least} to {most}")
+    least, most = (1, 2**24) if grid == "even" else (4, 2**28)
+    count = None if points is None else arguments.integer("points", points, least, most)
     mapped = (
         mesh
         if isinstance(mesh, SphereMap) and triangles is None and sphere is None
