@@ -44,8 +44,7 @@ struct MappedMesh : spherical_param::CutMesh {
 /** \brief What becomes of a mesh with handles, which has no map to one sphere. */
 enum class HandlesOnSphere { Cut, Refused };
 
-/** \brief The vertices of the last mesh, consolidated and smoothed.
- * \return 3 x v */
+/** \brief The vertices of the last mesh, consolidated and smoothed, 3 x v. */
 template <typename PointInT>
 spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
@@ -54,8 +53,7 @@ verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   return positionsOf(*reconstruction.getInputCloud(), reconstruction.getVertexIndices());
 }
 
-/** \brief Meshes a cloud and maps the mesh.
- * \return false after a failure */
+/** \brief Meshes a cloud and maps the mesh. \return false after a failure */
 template <typename PointInT>
 bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSphere handles,
              const spherical_param::SphereMapOptions& options, MappedMesh& mesh) {
@@ -79,12 +77,7 @@ bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSp
 }
 
 /** \brief Meshes a cloud, maps the mesh, and makes an output of it; only its header is left after a
- * failure.
- * \param[in] function the name that messages begin with
- * \param[in] handles cut or refused
- * \param[in] options of the map
- * \param[in] threads of `make`; 0: those of the reconstruction
- * \param[in] make called with the mesh and the threads; returns the output without its header
+ * failure. `make` is called with the mesh and with `threads`, or else those of the reconstruction.
  * \return false after a failure */
 template <typename PointInT, typename Output, typename Make>
 bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& reconstruction,

@@ -65,17 +65,14 @@ struct MorphShape {
 /** \brief Throws InvalidInput for a number of frames that is out of range. */
 PCL_EXPORTS void checkFrames(int frames);
 
-/** \brief Morphs two meshes that are mapped to the sphere.
- * \param[in] execution used instead of that of the options
- * \param[out] impossible if it is given: the pairs that could not be honoured
- * \return the frames */
+/** \brief The frames between two meshes that are mapped to the sphere, with `execution` instead of
+ * that of the options. */
 PCL_EXPORTS std::vector<pcl::PolygonMesh>
 morph(const MorphShape& first, const MorphShape& second, int frames,
       const SphericalParamMorphOptions& options, const spherical_param::Execution& execution,
       const pcl::PCLHeader& header, std::vector<spherical_param::ImpossiblePair>* impossible);
 
-/** \brief Meshes a cloud, maps the mesh, and finds the vertex of each point.
- * \return false after a failure */
+/** \brief Meshes and maps a cloud, and finds the vertex of each point. \return false: it failed */
 template <typename PointInT>
 bool mapForMorph(SphericalParamReconstruction<PointInT>& reconstruction,
                  const spherical_param::SphereMapOptions& options, MorphShape& shape) {

@@ -397,8 +397,7 @@ private:
   /** \brief Fills the results. */
   void meshPoints(FillMode fill);
 
-  /** \brief Clears the results, does the work and, if that fails, clears results and output and
-   * says why. */
+  /** \brief Clears the results, does the work and, if it fails, clears all and says why. */
   void run(const std::function<void()>& work, const std::function<void()>& clear_output);
 
   void clearResults();
@@ -406,9 +405,7 @@ private:
   /** \brief Throws InvalidInput for a cloud or indices that initCompute() must not see. */
   void checkInput() const;
 
-  /** \brief Collects the points, finite or not, without repeated indices.
-   * \param[out] used_indices of these points
-   * \return the points, 3 x used_indices.size() */
+  /** \brief Collects the points, 3 x n, finite or not, and their indices without repetitions. */
   spherical_param::Positions collectPoints(pcl::Indices& used_indices);
 
   /** \brief Collects the normals of these points, and the sensor. */

@@ -48,8 +48,7 @@ bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction
 
 namespace detail {
 
-/** \brief Samples a mesh that is mapped to the sphere.
- * \return the new mesh, without a header */
+/** \brief A mesh that is mapped to the sphere, sampled anew, without a header. */
 PCL_EXPORTS pcl::PolygonMesh remesh(const MappedMesh& mesh,
                                     const SphericalParamRemeshOptions& options, int threads);
 

@@ -57,9 +57,8 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
 
 namespace detail {
 
-/** \brief Gives a mesh that is mapped to the sphere a texture.
- * \param[in] colors 3 x v of the mesh before it was cut, or empty: a checkerboard
- * \return the mesh, without a header */
+/** \brief A mesh that is mapped to the sphere, with a texture and without a header. The colours are
+ * 3 x v, of the mesh before it was cut, or none: a checkerboard. */
 PCL_EXPORTS pcl::TextureMesh textureMesh(const MappedMesh& mesh,
                                          const spherical_param::Positions& colors,
                                          const SphericalParamTextureOptions& options, int threads,
@@ -78,8 +77,7 @@ Eigen::Vector3d colorOf(const PointT& point) {
   return Eigen::Vector3d(packed >> 16 & 0xFF, packed >> 8 & 0xFF, packed & 0xFF);
 }
 
-/** \brief The colours of the vertices of the last mesh.
- * \return 3 x v; empty for points without */
+/** \brief The colours of the vertices of the last mesh, 3 x v; empty for points without. */
 template <typename PointInT>
 spherical_param::Positions colorsOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   spherical_param::Positions colors;

@@ -30,8 +30,7 @@ PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t h
 /** \brief Makes a cloud of NaN. */
 PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points);
 
-/** \brief Gives the used points of a cloud the positions of vertices, 3 x v.
- * \param[in] vertex_of_used the vertex of each of the used points */
+/** \brief Gives the used points of a cloud the positions of their vertices, 3 x v. */
 PCL_EXPORTS void placeVertices(const spherical_param::Positions& vertices,
                                const std::vector<spherical_param::Index>& vertex_of_used,
                                const pcl::Indices& used_points,

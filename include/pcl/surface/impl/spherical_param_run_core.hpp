@@ -40,13 +40,9 @@ guardProgress(const std::function<bool(const spherical_param::Progress&)>& progr
 PCL_EXPORTS std::string failureOf(const std::function<void()>& work,
                                   std::exception_ptr& callback_error);
 
-/** \brief Calls work that uses the core, and reports a failure by PCL_ERROR. Throws only exceptions
- * of the user's progress callback.
- * \param[in] function the name that the message begins with
- * \param[in] execution of the user
- * \param[in] threads used if `execution` gives none
- * \param[in] work called with the execution that it should pass to the core
- * \return false after a failure */
+/** \brief Calls work with the execution for the core, whose threads are those of the user, or
+ * `threads`, and reports a failure by PCL_ERROR: "[pcl::function] ...". Throws only exceptions of
+ * the user's progress callback. \return false after a failure */
 PCL_EXPORTS bool runCore(const char* function, const spherical_param::Execution& execution,
                          unsigned int threads,
                          const std::function<void(const spherical_param::Execution&)>& work);

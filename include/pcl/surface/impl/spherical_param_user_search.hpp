@@ -64,9 +64,8 @@ struct OrganizedCamera : public pcl::search::OrganizedNeighbor<PointInT> {
   }
 };
 
-/** \brief Rejects a camera model of an OrganizedNeighbor that does not hold for the cloud, with
- * which it would find few or wrong neighbours, or not return.
- * \param[in] points indices into the cloud */
+/** \brief Rejects a camera model of an OrganizedNeighbor that does not hold for some points of the
+ * cloud: with it, it would find few or wrong neighbours, or not return. */
 template <typename PointInT>
 void checkCameraModel(const pcl::search::OrganizedNeighbor<PointInT>& search,
                       const pcl::PointCloud<PointInT>& cloud, const pcl::Indices& points) {
@@ -92,7 +91,7 @@ void checkCameraModel(const pcl::search::OrganizedNeighbor<PointInT>& search,
 }
 
 /** \brief Gives some points of a cloud to a search object.
- * \return the meshed point of each possible answer of the search object; -1: none */
+ * \return the point that each answer stands for; -1: none */
 template <typename PointInT>
 std::vector<spherical_param::Index>
 fillUserSearch(pcl::search::Search<PointInT>& search,
@@ -122,12 +121,9 @@ fillUserSearch(pcl::search::Search<PointInT>& search,
   return point_of_index;
 }
 
-/** \brief Gives some points to the search object of the user. Queries come one after the other: it
- * need not support concurrent queries.
- * \param[in] search must outlive the result
- * \param[in] used_indices index in the cloud of each meshed point; must outlive the result
- * \param[in] points to search among, as positions in used_indices
- * \return a search that numbers points by their position in used_indices */
+/** \brief A search of the core by the search object of the user, among some points, which are
+ * positions in used_indices, the indices in the cloud. Both must outlive it. Queries come one after
+ * the other: it need not support concurrent queries. */
 template <typename PointInT>
 spherical_param::NeighborSearch useSearch(pcl::search::Search<PointInT>& search,
                                           const typename pcl::PointCloud<PointInT>::ConstPtr& cloud,
