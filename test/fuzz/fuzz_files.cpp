@@ -6,6 +6,7 @@
 #include "common/errors.h"
 #include "common/geometry_image_file.h"
 #include "common/point_pairs.h"
+#include "fuzz_input.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -23,14 +23,7 @@
 namespace {
 
 using namespace spherical_param::tools;
-
-/// Ends the fuzzer if something does not hold, whatever the build.
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "finding: not so: %s\n", what);
-    std::abort();
-  }
-}
+using fuzz::require;
 
 /// A file in memory with a name that the tools take for one of theirs: a link in $TMPDIR.
 class MemoryFile {
