@@ -1,4 +1,4 @@
-// Meshes many nasty sets of points, in many ways. VTK and exact arithmetic check each answer.
+// Meshes many nasty sets of points, in many ways. Exact arithmetic checks each answer.
 //
 //   stress_shapes [--quick] [--seed N]
 
@@ -7,13 +7,6 @@
 #include "nasty_sets.h"
 #include "random.h"
 #include "stress.h"
-
-#include <vtkCellArray.h>
-#include <vtkFeatureEdges.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataConnectivityFilter.h>
 
 #include <algorithm>
 #include <atomic>
@@ -29,30 +22,6 @@ namespace {
 
 using namespace spherical_param;
 
-/// Whether VTK takes triangles for a closed manifold in one piece.
-bool isClosedForVtk(const Triangles& triangles, Index vertices) {
-  // Made-up points, far from each other: VTK's filters must not merge what is near.
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (Index v = 0; v < vertices; ++v)
-    points->InsertNextPoint(v, v % 7, v % 11);
-  vtkNew<vtkCellArray> cells;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    cells->InsertNextCell({triangles(0, t), triangles(1, t), triangles(2, t)});
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetPolys(cells);
-  vtkNew<vtkPolyDataConnectivityFilter> regions;
-  regions->SetInputData(data);
-  regions->SetExtractionModeToAllRegions();
-  regions->Update();
-  vtkNew<vtkFeatureEdges> edges;  // boundaries and edges of more than two triangles
-  edges->SetInputData(data);
-  edges->FeatureEdgesOff();
-  edges->Update();
-  return edges->GetOutput()->GetNumberOfCells() == 0 && regions->GetNumberOfExtractedRegions() == 1;
-}
-
 /// What is wrong with the answer to a set; empty if nothing is.
 std::string tryOut(const stress::NastySet& set, std::uint64_t seed) {
   stress::Random random(seed ^ 0x5eedULL);
@@ -61,9 +30,6 @@ std::string tryOut(const stress::NastySet& set, std::uint64_t seed) {
   const stress::Answer answer = stress::answerTo(set, 1, search_of);
   if (!answer.fault.empty())
     return answer.fault;
-  for (const Surface& surface : answer.result.surfaces)
-    if (!isClosedForVtk(surface.triangles, static_cast<Index>(surface.vertexCount())))
-      return "VTK takes the mesh for open, no manifold, or several pieces";
   if (random.chance(0.25) && answer.bytes != stress::answerTo(set, 3, search_of).bytes)
     return "other bytes with 3 threads";
   return "";
@@ -85,10 +51,10 @@ bool findsPlantedFaults() {
   inside_out.row(0).swap(inside_out.row(1));
   Triangles twice(3, 16);
   twice << sound, (sound.array() + 6).matrix();
-  return isClosedForVtk(sound, 6) && !isClosedForVtk(sound.leftCols(7), 6) &&
-         !isClosedForVtk(twice, 12) && test::isSphereOverAll(sound, 6) &&
-         !test::isSphereOverAll(flipped, 6) && !test::isSphereOverAll(sound, 7) &&
-         !stress::facesInward(points, sound) && stress::facesInward(points, inside_out);
+  return test::isSphereOverAll(sound, 6) && !test::isSphereOverAll(sound.leftCols(7), 6) &&
+         !test::isSphereOverAll(twice, 12) && !test::isSphereOverAll(flipped, 6) &&
+         !test::isSphereOverAll(sound, 7) && !stress::facesInward(points, sound) &&
+         stress::facesInward(points, inside_out);
 }
 
 }  // namespace
