@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 namespace spherical_param_ros {
@@ -94,43 +95,25 @@ Parameter option(const OptionRow& row) {
           }};
 }
 
-/// A parameter that is an integer from `min` up.
+/// A parameter that is a field of the settings: true or false, or an integer from `min` up.
 template <typename Field>
-Parameter integer(const std::string& name, const std::string& description, int min, Field field) {
-  constexpr int max = std::numeric_limits<int>::max();
-  const std::string range = "an integer from " + std::to_string(min) + " up";
-  Settings defaults;
-  return {{name,
-           description + "; " + range,
-           static_cast<std::int64_t>(field(defaults)),
-           double(min),
-           double(max),
-           {}},
-          [field](const Settings& settings) {
-            Settings copy = settings;
-            return Value(static_cast<std::int64_t>(field(copy)));
-          },
+Parameter own(const std::string& name, const std::string& description, Field Settings::*field,
+              int min = 0) {
+  constexpr bool is_flag = std::is_same_v<Field, bool>;
+  using Known = std::conditional_t<is_flag, bool, std::int64_t>;
+  constexpr std::int64_t max = is_flag ? 1 : std::numeric_limits<int>::max();
+  const std::string range =
+      is_flag ? "true or false" : "an integer from " + std::to_string(min) + " up";
+  const auto get = [field](const Settings& settings) {
+    return Value(static_cast<Known>(settings.*field));
+  };
+  return {{name, description + "; " + range, get({}), double(min), double(max), {}},
+          get,
           [=](Settings& settings, const Value& value) {
-            const auto* number = std::get_if<std::int64_t>(&value);
-            if (number == nullptr || *number < min || *number > max)
+            const auto* known = std::get_if<Known>(&value);
+            if (known == nullptr || std::int64_t{*known} < min || std::int64_t{*known} > max)
               refuse(name, value, range);
-            field(settings) = static_cast<std::decay_t<decltype(field(settings))>>(*number);
-          }};
-}
-
-Parameter cancelRunning() {
-  const std::string name = "cancel_running";
-  return {{name,
-           "a newer cloud cancels the work on the current one; true or false",
-           Settings().cancel_running,
-           0.0,
-           0.0,
-           {}},
-          [](const Settings& settings) { return Value(settings.cancel_running); },
-          [=](Settings& settings, const Value& value) {
-            if (!std::holds_alternative<bool>(value))
-              refuse(name, value, "true or false");
-            settings.cancel_running = std::get<bool>(value);
+            settings.*field = static_cast<Field>(*known);
           }};
 }
 
@@ -138,17 +121,14 @@ std::vector<Parameter> makeParameters() {
   std::vector<Parameter> all;
   for (const OptionRow& row : spherical_param::optionTable())
     all.push_back(option(row));
-  all.push_back(integer(
-      "max_points", "larger clouds are refused; 0: no limit", 0,
-      [](Settings & s) -> auto& { return s.max_points; }));
-  all.push_back(integer(
-      "queue_depth", "maximum number of waiting clouds; the oldest is dropped", 1,
-      [](Settings & s) -> auto& { return s.queue_depth; }));
-  all.push_back(cancelRunning());
-  all.push_back(integer(
-      "max_cancellations",
-      "maximum number of cancellations in a row; then a cloud is meshed to its end", 0,
-      [](Settings & s) -> auto& { return s.max_cancellations; }));
+  all.push_back(own("max_points", "larger clouds are refused; 0: no limit", &Settings::max_points));
+  all.push_back(own("queue_depth", "maximum number of waiting clouds; the oldest is dropped",
+                    &Settings::queue_depth, 1));
+  all.push_back(own("cancel_running", "a newer cloud cancels the work on the current one",
+                    &Settings::cancel_running));
+  all.push_back(own("max_cancellations",
+                    "maximum number of cancellations in a row; then a cloud is meshed to its end",
+                    &Settings::max_cancellations));
   return all;
 }
 
