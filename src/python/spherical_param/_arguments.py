@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from contextlib import suppress
 from typing import Any, SupportsFloat, SupportsIndex
 
 import numpy as np
@@ -20,7 +21,7 @@ def thread_count(threads: SupportsIndex) -> int:
     return integer("threads", threads, 0, 1024)
 
 
-def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) -> NDArray[Any]:
+def _numbers(name: str, value: ArrayLike, kinds: str, remedy: str) -> NDArray[Any]:
     if isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "fiu":
         # Masked points are ignored.
         masked: Any = value
@@ -29,14 +30,12 @@ def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) ->
         array = np.asarray(value)
     except (TypeError, ValueError) as error:
         raise InvalidInput(
-            f"{name} cannot be made an array ({error}); give {what} with rows of one length"
+            f"{name} cannot be made an array ({error}); give an array with rows of one length"
         ) from error
     if array.dtype.kind == "O":
         # Such as rows of Fraction or Decimal; others are refused below.
-        try:
+        with suppress(TypeError, ValueError):
             array = array.astype(np.float64)
-        except (TypeError, ValueError):
-            pass
     for attribute in ("points", "vertices"):
         if array.dtype.kind == "O" and hasattr(value, attribute):
             raise InvalidInput(
@@ -44,29 +43,27 @@ def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) ->
                 f"np.asarray(pcd.{attribute})"
             )
     if array.dtype.kind not in kinds:
-        raise InvalidInput(f"{name} is an array of {array.dtype}; give {what} of {remedy}")
+        raise InvalidInput(f"{name} is an array of {array.dtype}; give an array of {remedy}")
     if array.ndim != 2 or array.shape[1] != 3:
-        hint = ""
+        hint = "; give an array of shape (n, 3)"
         if array.ndim == 2 and array.shape[0] == 3:
             hint = "; it looks transposed, give its .T"
         elif array.ndim == 2 and array.shape[1] > 3:
             hint = "; give its first three columns, [:, :3]"
-        else:
-            hint = f"; give {what} of shape (n, 3)"
         raise InvalidInput(f"{name} has the shape {array.shape}, not (n, 3){hint}")
     return array
 
 
 def positions(name: str, value: ArrayLike) -> FloatArray:
     """(n, 3) float64 in C order: the caller's own array, if it is one."""
-    array = _numbers(name, value, "fiu", "an array", "real numbers, float64 best")
+    array = _numbers(name, value, "fiu", "real numbers, float64 best")
     with np.errstate(over="ignore"):
         return np.ascontiguousarray(array, dtype=np.float64)
 
 
 def triangle_indices(name: str, value: ArrayLike) -> IndexArray:
     """(m, 3) int32 in C order."""
-    array = _numbers(name, value, "iu", "an array", "integers, int32 best")
+    array = _numbers(name, value, "iu", "integers, int32 best")
     limits = np.iinfo(np.int32)
     if array.size and (array.min() < limits.min or array.max() > limits.max):
         raise InvalidInput(f"{name} has an index beyond 32 bits; give indices of the points")

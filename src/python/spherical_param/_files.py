@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
@@ -149,18 +150,14 @@ class MeshExport:
         notebooks, and takes its time from 100,000 triangles on. Raises ImportError without any.
         """
         if sys.platform in ("win32", "darwin") or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
-            try:
+            with suppress(ImportError):
                 import open3d
-            except ImportError:
-                pass
-            else:
+
                 open3d.visualization.draw_geometries([self.to_open3d()])
                 return
-            try:
+            with suppress(ImportError):
                 import pyvista
-            except ImportError:
-                pass
-            else:
+
                 faces = np.insert(self.triangles, 0, 3, axis=1)
                 pyvista.PolyData(self._export_points(), faces.ravel()).plot(
                     scalars=self.colors, rgb=True
