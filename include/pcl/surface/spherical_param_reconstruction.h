@@ -65,33 +65,20 @@ public:
   /** \brief Shared by several owners, none of whom changes it. */
   using ConstPtr = shared_ptr<const SphericalParamReconstruction<PointInT>>;
 
-  /** \brief What setSearchMethod() takes: any pcl::search::Search. */
-  using KdTree = typename MeshConstruction<PointInT>::KdTree;
-  /** \brief Shared pointer to such a search object. */
-  using KdTreePtr = typename MeshConstruction<PointInT>::KdTreePtr;
-  /** \brief The type of the input cloud. */
-  using PointCloudIn = pcl::PointCloud<PointInT>;
+  using KdTree = typename MeshConstruction<PointInT>::KdTree;  ///< what setSearchMethod() takes
+  using KdTreePtr = typename MeshConstruction<PointInT>::KdTreePtr;  ///< a shared one
+  using PointCloudIn = pcl::PointCloud<PointInT>;  ///< the type of the input cloud
 
-  /** \brief How the cloud is meshed. */
-  using Method = spherical_param::Method;
-  /** \brief Weights of the Laplacian. */
-  using EdgeWeights = spherical_param::EdgeWeights;
-  /** \brief Whether points are consolidated before meshing. */
-  using ConsolidationMode = spherical_param::ConsolidationMode;
-  /** \brief The topology of the mesh. */
-  using TopologyMode = spherical_param::TopologyMode;
-  /** \brief Whether openings of the surface are filled. */
-  using SurfaceMode = spherical_param::SurfaceMode;
-  /** \brief How openings are filled. */
-  using FillMode = spherical_param::FillMode;
-  /** \brief Whether the mesh has the handles of the surface. */
-  using HandleMode = spherical_param::HandleMode;
-  /** \brief What happens to triangles that intersect. */
-  using IntersectionMode = spherical_param::IntersectionMode;
-  /** \brief Which points are left out. */
-  using OutlierMode = spherical_param::OutlierMode;
-  /** \brief Which parts of the cloud are meshed. */
-  using PartsMode = spherical_param::PartsMode;
+  using Method = spherical_param::Method;                        ///< how the cloud is meshed
+  using EdgeWeights = spherical_param::EdgeWeights;              ///< of the Laplacian
+  using ConsolidationMode = spherical_param::ConsolidationMode;  ///< of noisy points
+  using TopologyMode = spherical_param::TopologyMode;            ///< of the mesh
+  using SurfaceMode = spherical_param::SurfaceMode;              ///< whether openings are filled
+  using FillMode = spherical_param::FillMode;                    ///< how openings are filled
+  using HandleMode = spherical_param::HandleMode;                ///< whether the mesh has handles
+  using IntersectionMode = spherical_param::IntersectionMode;    ///< what becomes of intersections
+  using OutlierMode = spherical_param::OutlierMode;              ///< which points are left out
+  using PartsMode = spherical_param::PartsMode;                  ///< which parts are meshed
   /** \brief Receives the progress of the work; returning false cancels it. */
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
