@@ -12,8 +12,7 @@ if(NOT TARGET Qhull::qhull_r)
   message(FATAL_ERROR "qhull (libqhull_r) was not found: install libqhull-dev")
 endif()
 # The first with the reentrant library is 2015.0, alias 7.0; installed alone, it tells no version.
-set(SPHERICAL_PARAM_QHULL_VERSION "${Qhull_VERSION}")
-spherical_param_require_version(qhull "${SPHERICAL_PARAM_QHULL_VERSION}" 7.0 libqhull-dev)
+spherical_param_require_version(qhull "${Qhull_VERSION}" 7.0 libqhull-dev)
 
 # FLANN's headers use lz4 on some systems without saying so.
 find_library(LZ4_LIBRARY lz4)
@@ -26,10 +25,9 @@ mark_as_advanced(SPHERICAL_PARAM_LZ4_INCLUDE_DIR SPHERICAL_PARAM_FLANN_INCLUDE_D
 spherical_param_version_of_header(lz4_version "${SPHERICAL_PARAM_LZ4_INCLUDE_DIR}/lz4.h"
   LZ4_VERSION_MAJOR LZ4_VERSION_MINOR LZ4_VERSION_RELEASE)
 spherical_param_require_version(lz4 "${lz4_version}" 1.8 liblz4-dev)
-set(SPHERICAL_PARAM_FLANN_HEADER ${SPHERICAL_PARAM_FLANN_INCLUDE_DIR}/flann/config.h)
-spherical_param_version_of_header(SPHERICAL_PARAM_FLANN_VERSION "${SPHERICAL_PARAM_FLANN_HEADER}"
-  FLANN_VERSION_)
-spherical_param_require_version(FLANN "${SPHERICAL_PARAM_FLANN_VERSION}" 1.9 libflann-dev)
+spherical_param_version_of_header(flann_version
+  "${SPHERICAL_PARAM_FLANN_INCLUDE_DIR}/flann/config.h" FLANN_VERSION_)
+spherical_param_require_version(FLANN "${flann_version}" 1.9 libflann-dev)
 
 if(NOT SPHERICAL_PARAM_BUILD_PCL)
   return()

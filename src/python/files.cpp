@@ -17,7 +17,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::python {

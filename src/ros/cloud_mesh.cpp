@@ -10,7 +10,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <utility>
 
 namespace spherical_param_ros {
 namespace {

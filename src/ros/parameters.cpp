@@ -8,7 +8,6 @@
 #include <limits>
 #include <sstream>
 #include <type_traits>
-#include <utility>
 
 namespace spherical_param_ros {
 namespace {

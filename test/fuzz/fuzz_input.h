@@ -18,7 +18,6 @@
 #include <limits>
 #include <string>
 #include <thread>
-#include <vector>
 
 /// What the fuzzers of the core share: points, lists and numbers from bytes, and how calls end.
 namespace fuzz {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <thread>
 #include <utility>
 #include <vector>

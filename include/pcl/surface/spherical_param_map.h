@@ -7,7 +7,6 @@
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/types.h"
 
-#include <cstddef>
 #include <utility>
 
 namespace pcl {

@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <functional>
 #include <utility>
-#include <vector>
 
 namespace spherical_param_ros {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "spherical_param/errors.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <functional>
