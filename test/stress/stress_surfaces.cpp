@@ -8,6 +8,7 @@
 #include "helpers.h"
 #include "open_shapes.h"
 #include "scan_shapes.h"
+#include "spherical_param/mesh_topology.h"
 #include "spherical_param/reconstruct.h"
 #include "stress.h"
 
@@ -77,12 +78,7 @@ Truth truthOf(const std::string& shape) {
   Truth truth;
   truth.openings = openingsOf(mesh);
   truth.handles = shape == "torus" ? 1 : shape == "double_torus" ? 2 : shape == "chair" ? 4 : 0;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const Vector3d a = mesh.vertices.col(mesh.triangles(0, t));
-    const Vector3d b = mesh.vertices.col(mesh.triangles(1, t));
-    const Vector3d c = mesh.vertices.col(mesh.triangles(2, t));
-    truth.area += (b - a).cross(c - a).norm() / 2.0;
-  }
+  truth.area = surfaceArea(mesh.vertices, mesh.triangles);
   if (shape == "pair")
     truth.kind = SurfaceKind::SeveralParts;
   else if (truth.handles > 0)
