@@ -1,7 +1,16 @@
-// Every public function but reconstruct(): the first byte picks one. It is given any arguments.
+// Every public function but reconstruct(): the first byte picks one. It is given any arguments. The
+// watch is the callback and has to outlive the call.
 
-#include "fuzz_stages.h"
+#include "embedding.h"
+#include "fuzz_input.h"
 #include "paper_method.h"
+#include "spherical_param/map/handle_cutting.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/reconstruct.h"
@@ -13,13 +22,65 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace fuzz {
 namespace {
 
 using namespace spherical_param;
+
+/// Points on the sphere, unless they are not finite.
+Positions normalized(const Positions& points) {
+  return points.allFinite() ? internal::projectFromCentroid(points) : points;
+}
+
+/// A mesh on points on the sphere, sometimes spoiled.
+Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
+  Triangles triangles(3, 0);
+  if (sphere.cols() >= 4 && stress::areUnitVectors(sphere))
+    triangles = triangulateSphere(sphere);
+  const auto n = static_cast<std::size_t>(sphere.cols());
+  const std::uint8_t how = bytes.byte();
+  if (how < 160)
+    return triangles;
+  if (how < 200) {  // some other corners
+    for (std::size_t i = bytes.below(8); i > 0 && triangles.cols() > 0; --i)
+      triangles.data()[bytes.raw<std::uint16_t>() % triangles.size()] =
+          bytes.index(n, how % 2 == 0);
+  } else if (how < 220 && triangles.cols() > 0) {  // an open one
+    const Eigen::Index left = triangles.cols() - 1 - bytes.byte() % triangles.cols();
+    triangles.conservativeResize(Eigen::NoChange, left);
+  } else if (how < 235) {
+    flipOrientation(triangles);
+  } else {
+    triangles.resize(3, bytes.byte() % 64);
+    for (Index& corner : triangles.reshaped())
+      corner = bytes.index(n, how % 2 == 0);
+  }
+  return triangles;
+}
+
+/// Threads from bytes, and the watch as the callback.
+Execution executionFrom(Bytes& bytes, Watch& watch) {
+  Execution execution;
+  execution.threads = bytes.integerOr(0);
+  if (watch.listens())
+    execution.progress = std::ref(watch);
+  return execution;
+}
+
+/// Limits the time of the work; a value that is out of range is kept.
+int atMost(int most, int value, int range) {
+  return value > most && value <= range ? most : value;
+}
+
+bool isSphere(const Triangles& triangles, const Positions& points) {
+  return test::isSphereOverAll(triangles, static_cast<Index>(points.cols()));
+}
 
 void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
   const bool is_by_qhull = bytes.oneIn(2);
@@ -86,11 +147,200 @@ void fuzzChecks(Bytes& bytes, const Positions& points, Watch& watch) {
           "the pairs of some triangles are those among all");
 }
 
+/// A surface and its map to the sphere.
+struct Mapped {
+  Triangles triangles;
+  Positions sphere;
+};
+
+Mapped mapFrom(Bytes& bytes, const Positions& points, Watch& watch) {
+  const Positions start = normalized(points);
+  Mapped mapped{trianglesFrom(bytes, start), start};
+  SphereMapOptions options;
+  options.area_weight = bytes.realOr(0.85);
+  options.sweeps = atMost(20, bytes.integerOr(3), 1000);
+  static_cast<Execution&>(options) = executionFrom(bytes, watch);
+  if (bytes.oneIn(16) && start.cols() > 0)
+    mapped.sphere(bytes.byte() % 3, bytes.byte() % start.cols()) = bytes.real();
+  const SphereMap map = computeSphereMap(points, mapped.triangles, mapped.sphere, options);
+  require(map.sphere.cols() == points.cols() && stress::areUnitVectors(map.sphere),
+          "the map is of unit vectors");
+  require(map.distortion.flipped_triangles == 0, "the map is one to one");
+  if (!bytes.oneIn(8))  // else the start, which may be folded
+    mapped.sphere = map.sphere;
+  return mapped;
+}
+
+SphereSurface surfaceFrom(Bytes& bytes, const Positions& points, Watch& watch) {
+  const Mapped mapped = mapFrom(bytes, points, watch);
+  SphereSurfaceOptions options;
+  options.fit = bytes.choice<SurfaceFit>(2);
+  options.threads = bytes.integerOr(0);
+  return {points, mapped.triangles, mapped.sphere, options};
+}
+
+void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool untangles) {
+  const auto grid = bytes.choice<SphereGrid>(2);
+  GridSphere directions = makeGridSphere(grid, atMost(4, bytes.integerOr(2), 1 << 15));
+  if (bytes.oneIn(8))
+    directions.triangles = trianglesFrom(bytes, directions.directions);
+  ResampledMesh mesh = resampleSurface(surface, directions);
+  if (bytes.oneIn(8))
+    mesh.points(bytes.byte() % 3, bytes.byte() % mesh.points.cols()) = bytes.real();
+  if (untangles)
+    untangle(surface, mesh, bytes.integerOr(0));
+  else
+    removeIntersections(mesh, bytes.integerOr(0));
+  require(isSphere(mesh.triangles, mesh.points) || !isSphere(directions.triangles, mesh.points),
+          "the remeshed surface is a sphere");
+  geometryImageOfMesh(mesh);
+}
+
+void fuzzCuts(Bytes& bytes) {
+  const int rings = 3 + bytes.byte() % 8;
+  const int around = 3 + bytes.byte() % 8;
+  Triangles triangles = test::torusTriangles(rings, around);
+  Positions points(3, rings * around);
+  for (double& x : points.reshaped())
+    x = bytes.byte();
+  if (bytes.oneIn(8))
+    triangles.data()[bytes.byte() % triangles.size()] = bytes.byte() % points.cols();
+  if (bytes.oneIn(2))  // an opening
+    triangles = Triangles(triangles.rightCols(triangles.cols() - 1 - bytes.byte() % 2));
+  const CutMesh cut = cutHandles(points, triangles);
+  require(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface(),
+          "a cut torus is an open surface");
+  const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
+  TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere, {bytes.choice<SphereChart>(3)});
+  CutMesh spoiled = cut;
+  const std::uint8_t fault = bytes.byte();
+  if (fault == 1)
+    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
+  else if (fault == 2)
+    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.byte();
+  else if (fault == 3)
+    spoiled.vertex_of[bytes.byte() % spoiled.vertex_of.size()] = bytes.byte();
+  else if (fault == 4)
+    atlas.source.resize(bytes.byte());
+  atlas = joinCuts(std::move(atlas), spoiled);
+  const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
+  require(fault > 1 || (topology.isSurface() && topology.genus == 1), "joined, it is a torus");
+}
+
+void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
+  const SphereSurface surface = surfaceFrom(bytes, points, watch);
+  const Eigen::Vector3d direction(bytes.real(), bytes.real(), bytes.real());
+  const int how = bytes.byte() % 8;
+  if (how == 0) {
+    const SphereLocation location = surface.locate(direction);
+    require(location.triangle >= 0 && location.triangle < surface.triangles().cols() &&
+                location.weights.minCoeff() >= 0.0 && std::abs(location.weights.sum() - 1.0) < 1e-9,
+            "a direction is in a triangle");
+    surface.evaluate(location);
+  } else if (how == 1) {
+    SphereLocation location;
+    location.triangle = bytes.index(static_cast<std::size_t>(surface.triangles().cols()));
+    location.weights = direction;
+    surface.evaluate(location);
+  } else if (how == 2) {
+    computeSphericalHarmonics(surface, atMost(8, bytes.integer(), 512), bytes.integerOr(0));
+  } else if (how == 3) {
+    const SurfacePoints samples = sampleEvenly(surface, bytes.byte(), bytes.byte());
+    require(samples.locations.size() == static_cast<std::size_t>(samples.points.cols()),
+            "each sample has a place");
+  } else if (how == 4) {
+    const int side = atMost(17, bytes.integer() | 1, 16385);
+    meshOfGeometryImage(makeGeometryImage(surface, side));
+  } else {
+    fuzzResampling(bytes, surface, how == 6);
+  }
+}
+
+void fuzzTexture(Bytes& bytes, const Positions& points, Watch& watch) {
+  if (bytes.oneIn(4)) {
+    fuzzCuts(bytes);
+    return;
+  }
+  const Mapped mapped = mapFrom(bytes, points, watch);
+  TextureAtlasOptions options;
+  options.chart = bytes.choice<SphereChart>(3);
+  options.margin = bytes.realOr(1.0 / 64);
+  const Eigen::Vector3d direction(bytes.real(), bytes.real(), bytes.real());
+  TextureAtlas atlas = makeTextureAtlas(mapped.triangles, mapped.sphere, options);
+  require(atlas.coordinates.minCoeff() >= 0.0 && atlas.coordinates.maxCoeff() <= 1.0,
+          "texture coordinates are in [0, 1]");
+  const std::uint8_t fault = bytes.byte();
+  if (fault == 1)
+    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.raw<Index>();
+  else if (fault == 2)
+    atlas.coordinate_triangles.data()[bytes.byte() % atlas.coordinate_triangles.size()] =
+        bytes.raw<Index>();
+  else if (fault == 3)
+    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
+  else if (fault == 4)
+    atlas.coordinates(0, bytes.byte() % atlas.coordinates.cols()) = bytes.real();
+  else if (fault == 5)
+    atlas.chart = static_cast<SphereChart>(bytes.integer());
+  BakeOptions bake;
+  bake.height = atMost(40, bytes.integerOr(16), 16384);
+  bake.gutter = bytes.integerOr(2);
+  bake.threads = bytes.integerOr(0);
+  if (bytes.oneIn(2)) {
+    Positions colors = (points.array() - points.minCoeff()).matrix();
+    colors *= 255.0 / std::max(colors.maxCoeff(), 1e-300);
+    bakeColors(atlas, bytes.oneIn(2) ? points : colors, bake);
+  } else {
+    bakeCheckerboard(atlas, bytes.oneIn(8) ? points : mapped.sphere, bytes.integerOr(8), bake);
+  }
+  const Eigen::Vector2d place = chartCoordinates(options, direction);
+  require(place.minCoeff() >= 0.0 && place.maxCoeff() <= 1.0, "a direction is in the chart");
+}
+
+void fuzzMorph(Bytes& bytes, const Positions& points, Watch& watch) {
+  const Eigen::Index few = bytes.byte() % 16 + 4;
+  Bytes of_second = bytes;
+  Positions second = pointsFrom(of_second);
+  second.conservativeResize(Eigen::NoChange, std::min(second.cols(), few));
+  Bytes silence(nullptr, 0);
+  Watch nobody(silence);
+  const SphereSurface from = surfaceFrom(bytes, points, nobody);
+  const SphereSurface to = surfaceFrom(bytes, second, nobody);
+  MorphOptions options;
+  options.align = bytes.oneIn(32);  // as long as all the rest together
+  for (std::size_t i = bytes.below(4); i > 0; --i)
+    options.pairs.push_back({bytes.index(static_cast<std::size_t>(points.cols())),
+                             bytes.index(static_cast<std::size_t>(second.cols()))});
+  options.connectivity = bytes.choice<MorphConnectivity>(2);
+  options.samples = bytes.oneIn(8) ? bytes.raw<std::size_t>() : 12U + bytes.byte();
+  if (options.samples > 1000 && options.samples <= std::size_t{1} << 24)
+    options.samples = 1000;
+  static_cast<Execution&>(options) = executionFrom(bytes, watch);
+  const MorphResult result = morphSurfaces(from, to, options);
+  require(isSphere(result.triangles, result.first) && result.second.cols() == result.first.cols(),
+          "the morph is a sphere");
+  inBetween(result, bytes.real());
+}
+
+void fuzzHarmonics(Bytes& bytes, const Positions& points, Watch&) {
+  SphericalHarmonics harmonics;
+  harmonics.degree = atMost(8, bytes.integer(), 512);
+  const int terms = harmonics.degree >= 0 && harmonics.degree < 512
+                        ? (harmonics.degree + 1) * (harmonics.degree + 1)
+                        : 1;
+  harmonics.coefficients =
+      Positions::Constant(3, bytes.oneIn(4) ? bytes.byte() : terms, bytes.real());
+  require(evaluateSphericalHarmonics(harmonics, points, bytes.integerOr(0)).cols() == points.cols(),
+          "each direction has a point");
+  if (points.cols() > 0)
+    sphericalHarmonicsAt(points.col(0), atMost(30, bytes.integer(), 512));
+}
+
 }  // namespace
 }  // namespace fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fuzz;
+  using Call = void (*)(Bytes&, const Positions&, Watch&);
   constexpr std::array<Call, 7> calls{fuzzTriangulation, fuzzOutliers, fuzzChecks,   fuzzSurface,
                                       fuzzTexture,       fuzzMorph,    fuzzHarmonics};
   Bytes bytes(data, size);
