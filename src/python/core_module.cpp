@@ -4,10 +4,9 @@
 
 #include "common/errors.h"
 #include "python/arrays.h"
+#include "python/conversions.h"
 #include "python/files.h"
 #include "python/listener.h"
-#include "python/options.h"
-#include "python/reports.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"

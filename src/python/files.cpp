@@ -10,8 +10,8 @@
 #include "common/point_table.h"
 #include "common/reconstruction_report.h"
 #include "common/report_page.h"
+#include "python/conversions.h"
 #include "python/listener.h"
-#include "python/options.h"
 #include "spherical_param/version.h"
 
 #include <pybind11/stl.h>

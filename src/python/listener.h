@@ -21,7 +21,26 @@ public:
 
   /// Called without the interpreter's lock; takes it only where it calls Python.
   /// \return false to end the work: the function said so, or there is an exception.
-  bool report(const char* stage, double fraction);
+  bool report(const char* stage, double fraction) {
+    // To take the interpreter's lock may mean to wait for another thread's turn to end, and without
+    // a function to call it is for signals alone.
+    constexpr std::chrono::milliseconds between_signals(50);
+    const auto now = std::chrono::steady_clock::now();
+    if (callback_.is_none() && now - last_ < between_signals)
+      return true;
+    last_ = now;
+    const pybind11::gil_scoped_acquire interpreter;
+    try {
+      if (PyErr_CheckSignals() != 0)
+        throw pybind11::error_already_set();
+      if (callback_.is_none())
+        return true;
+      return callback_(stage, fraction).ptr() != Py_False;
+    } catch (...) {
+      error_ = std::current_exception();
+      return false;
+    }
+  }
 
   /// Threads, and this listener's report as the progress callback.
   Execution execution(int threads, std::optional<double> time_limit = std::nullopt) {
