@@ -1,57 +1,37 @@
 // pcl_spherical_param_morph: changes the shape of one point cloud into that of another, as a
 // sequence of meshes.
 
-#include "common/command_line.h"
-#include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/findings.h"
-#include "common/json_report.h"
-#include "common/mesh_writer.h"
-#include "common/names.h"
-#include "common/numbers.h"
-#include "common/output_file.h"
-#include "common/output_options.h"
-#include "common/point_data.h"
 #include "common/point_pairs.h"
 #include "common/product_input.h"
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "common/tool_run.h"
 #include "spherical_param/map/morphing.h"
-#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
+#include <regex>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
 
 using namespace spherical_param::tools;
-using spherical_param::ImpossiblePair;
-using spherical_param::Index;
 using spherical_param::MorphConnectivity;
 using spherical_param::MorphResult;
 using spherical_param::Positions;
-using spherical_param::SphereLocation;
 using spherical_param::SphereSurface;
 using spherical_param::SurfaceFit;
-
-const std::string tool_name = "pcl_spherical_param_morph";
 
 enum class Alignment { None, Rotation };
 
@@ -63,52 +43,24 @@ const Names<MorphConnectivity> connectivity_names = {
     {"all", MorphConnectivity::AllVertices},
     {"resampled", MorphConnectivity::Resampled},
 };
-const Names<SurfaceFit> fit_names = {
-    {"linear", SurfaceFit::Linear},
-    {"smooth", SurfaceFit::Smooth},
-};
-
-const std::vector<OptionInfo> own_options = {
-    {"frames", "N", "number of meshes including both ends, 2 to 10000 (20)"},
-    {"pairs", "FILE", "points that become one: two numbers from 0, or six coordinates a line"},
-    {"align", "NAME", "of the spheres: none, or rotation: the best of all (rotation)"},
-    {"connectivity", "NAME", "all: the vertices of both meshes, or resampled (all)"},
-    {"samples", "N", "approximate number of vertices of resampled, 12 to 16777216 (40962)"},
-    {"fit", "NAME", "between vertices: linear or smooth (linear; resampled: smooth)"},
-    {"match", "", "move and scale the second object to the place and the area of the first"},
-    {"check", "", "count the self-intersections of all frames"},
-};
-const ProductDefaults product_defaults(HandlesOnSphere::Refused);
-const std::vector<OptionInfo> option_table =
-    joined({own_options, productOptions(product_defaults), outputOptions()});
-
-/// What each does, and the words after the tool's name.
-const std::vector<std::pair<std::string, std::string>> example_table = {
-    {"Twenty meshes from one scan to another", "scan.ply other.ply morph.ply"},
-};
-
-std::string helpText(bool with_experts) {
-  return "Usage: " + tool_name +
-         " first second output [options]\n\n"
-         "Meshes the points of two objects without holes through them and morphs the first into\n"
-         "the second by their maps to the sphere. The output morph.ply or morph_%03d.ply writes\n"
-         "morph_000.ply and so on.\n"
-         "  inputs: " +
-         extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
-         "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
-         "the meshes and the map hold for both clouds):\n" +
-         describeOptions(option_table, with_experts) + "\n" +
-         describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also if the mesh is "
-         "unfit),\n"
-         "2 wrong usage, 3 written but not usable: more than 1 % of the triangles intersect.\n";
+ToolText toolText() {
+  return {"pcl_spherical_param_morph",
+          "first second output",
+          "Meshes the points of two objects without holes through them and morphs the first into\n"
+          "the second by their maps to the sphere. The output morph.ply or morph_%03d.ply writes\n"
+          "morph_000.ply and so on. Options of the meshes and the map hold for both clouds.\n"
+          "  inputs: " +
+              extensionsFor(FileUse::ReadCloud) +
+              "\n  output: " + extensionsFor(FileUse::WriteMesh) + "\n",
+          {{"Twenty meshes from one scan to another", "scan.ply other.ply morph.ply"}}};
 }
 
 /// What the user asked for.
 struct Settings {
   std::array<std::string, 2> inputs;
   std::string output;
-  std::vector<std::string> frames;  ///< their files
+  std::size_t frames = 20;
+  std::vector<std::string> files;  ///< of the frames
   FileFormat format = nullptr;
   std::string pairs;  ///< empty: none
   Alignment alignment = Alignment::Rotation;
@@ -117,23 +69,32 @@ struct Settings {
   SurfaceFit fit = SurfaceFit::Linear;
   bool match = false;
   bool check = false;
-  ProductSettings product;
+  ProductSettings product{HandlesOnSphere::Refused};
   OutputSettings report;
 
+  bool isResampled() const { return connectivity == MorphConnectivity::Resampled; }
   int threads() const { return product.reconstruction.options.threads; }
 };
 
-constexpr std::size_t fewest_digits = 3;
-
-/// A number with zeros before it.
-std::string padded(int number, std::size_t digits) {
-  const std::string text = std::to_string(number);
-  return std::string(digits - std::min(digits, text.size()), '0') + text;
-}
-
-[[noreturn]] void refusePattern(const std::string& pattern) {
-  throw UsageError("the output " + inQuotes(pattern) + " has a % that is not a frame number",
-                   "give one placeholder, as in frame_%03d.ply, or none");
+OptionTable optionsOf(Settings& settings) {
+  return joined(
+      {{numberOption("frames", "number of meshes including both ends", settings.frames, 2, 10000),
+        fileOption("pairs", "points that become one: two numbers from 0, or six coordinates a line",
+                   settings.pairs),
+        choiceOption("align", "of the spheres: none, or the best rotation of all",
+                     settings.alignment, alignment_names),
+        choiceOption("connectivity", "the vertices of both meshes, or those of a geodesic sphere",
+                     settings.connectivity, connectivity_names),
+        usedIf([&] { return settings.isResampled(); },
+               numberOption("samples", "approximate number of vertices of resampled",
+                            settings.samples, 12, 1 << 24)),
+        choiceOption("fit", "between vertices; resampled: smooth, unless it is given", settings.fit,
+                     fit_names),
+        flagOption("match", "move and scale the second object to the place and area of the first",
+                   settings.match),
+        flagOption("check", "count the self-intersections of all frames", settings.check)},
+       productOptions(settings.product),
+       outputOptions(settings.report)});
 }
 
 /// Names of numbered files. A placeholder in the pattern's file name, %d or %03d with any number of
@@ -141,90 +102,47 @@ std::string padded(int number, std::size_t digits) {
 /// extension: morph.ply gives morph_000.ply. Frames begin at 0.
 ///
 /// \throw UsageError for a pattern with another or a second %.
-std::vector<std::string> frameNames(const std::string& pattern, int frames) {
-  const std::size_t slash = pattern.rfind('/');
-  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
-  const std::size_t percent = pattern.find('%', begin);
-  std::string before;
-  std::string after;
-  std::size_t digits = std::max(fewest_digits, std::to_string(frames - 1).size());
-  if (percent == std::string::npos) {
-    const std::size_t dot = pattern.rfind('.');
-    const std::size_t end = dot == std::string::npos || dot < begin ? pattern.size() : dot;
-    before = pattern.substr(0, end) + "_";
-    after = pattern.substr(end);
-  } else {
-    // The text between % and d is nothing, or a 0 and one digit from 1 to 9.
-    const std::size_t d =
-        percent + 1 < pattern.size() && pattern[percent + 1] == '0' ? percent + 3 : percent + 1;
-    if (d >= pattern.size() || pattern[d] != 'd' ||
-        pattern.find('%', percent + 1) != std::string::npos) {
-      refusePattern(pattern);
-    }
-    digits = 1;
-    if (d == percent + 3) {
-      if (pattern[percent + 2] < '1' || pattern[percent + 2] > '9') {
-        refusePattern(pattern);
-      }
-      digits = static_cast<std::size_t>(pattern[percent + 2] - '0');
-    }
-    before = pattern.substr(0, percent);
-    after = pattern.substr(d + 1);
+std::vector<std::string> frameNames(const std::string& pattern, std::size_t frames) {
+  static const std::regex placeholder("([^%]*)%(?:0([1-9]))?d([^%]*)");
+  static const std::regex plain("([^%]*?)()((?:\\.[^%.]*)?)");
+  const std::size_t begin = pattern.rfind('/') + 1;
+  const std::string name = pattern.substr(begin);
+  std::smatch parts;
+  const bool has_placeholder = std::regex_match(name, parts, placeholder);
+  if (!has_placeholder && !std::regex_match(name, parts, plain)) {
+    throw UsageError("the output " + inQuotes(pattern) + " has a % that is not a frame number",
+                     "give one placeholder, as in frame_%03d.ply, or none");
   }
+  const std::size_t digits = !has_placeholder
+                                 ? std::max<std::size_t>(3, std::to_string(frames - 1).size())
+                             : parts[2].matched ? std::stoul(parts[2])
+                                                : 1;
   std::vector<std::string> names;
-  names.reserve(static_cast<std::size_t>(frames));
-  for (int frame = 0; frame < frames; ++frame) {
-    names.push_back(before + padded(frame, digits) + after);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    const std::string number = std::to_string(frame);
+    names.push_back(pattern.substr(0, begin) + parts[1].str() + (has_placeholder ? "" : "_") +
+                    std::string(digits - std::min(digits, number.size()), '0') + number +
+                    parts[3].str());
   }
   return names;
 }
 
-Settings parseSettings(const CommandLine& command_line) {
-  const std::vector<std::string>& files = command_line.others();
-  if (files.size() != 3) {
-    throw UsageError(files.size() > 3    ? "one file too many: " + inQuotes(files[3])
-                     : files.size() == 2 ? "the output file is missing"
-                                         : "two input files are needed",
-                     "run '" + tool_name + " first second output [options]', -h shows the options");
-  }
-  Settings settings;
+void parse(const CommandLine& command_line, Settings& settings) {
+  const std::vector<std::string> files = filesOf(command_line, toolText());
   settings.inputs = {files[0], files[1]};
   settings.output = files[2];
   for (const std::string& input : settings.inputs) {
     requireFormat(input, FileUse::ReadCloud);
   }
   settings.format = requireFormat(settings.output, FileUse::WriteMesh);
-  const auto frames = parseInteger("frames", command_line.value("frames", "20"), {2, 10000});
-  settings.frames = frameNames(settings.output, static_cast<int>(frames));
-  settings.pairs = command_line.value("pairs", "");
-  if (command_line.has("pairs") && settings.pairs.empty()) {
-    throw UsageError("option -pairs: the name of the file is empty", "give a file");
+  command_line.apply(optionsOf(settings));
+  settings.files = frameNames(settings.output, settings.frames);
+  if (!settings.isResampled()) {
+    command_line.refuse({"samples"}, "-connectivity all", "-connectivity resampled");
+  } else if (!command_line.has("fit")) {
+    settings.fit = SurfaceFit::Smooth;
   }
-  if (command_line.has("align")) {
-    settings.alignment = parseName("align", command_line.value("align", ""), alignment_names);
-  }
-  if (command_line.has("connectivity")) {
-    settings.connectivity =
-        parseName("connectivity", command_line.value("connectivity", ""), connectivity_names);
-  }
-  const bool is_resampled = settings.connectivity == MorphConnectivity::Resampled;
-  if (command_line.has("samples")) {
-    if (!is_resampled) {
-      throw UsageError("option -samples does nothing with -connectivity all",
-                       "leave -samples out, or give -connectivity resampled");
-    }
-    settings.samples = static_cast<std::size_t>(
-        parseInteger("samples", command_line.value("samples", ""), {12, std::int64_t{1} << 24U}));
-  }
-  settings.fit = is_resampled ? SurfaceFit::Smooth : SurfaceFit::Linear;
-  if (command_line.has("fit")) {
-    settings.fit = parseName("fit", command_line.value("fit", ""), fit_names);
-  }
-  settings.match = command_line.has("match");
-  settings.check = command_line.has("check");
-  settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line, product_defaults);
-  return settings;
+  parseProductOptions(command_line, settings.product);
 }
 
 void checkFiles(const Settings& settings) {
@@ -232,73 +150,31 @@ void checkFiles(const Settings& settings) {
   if (!settings.pairs.empty()) {
     others.push_back(settings.pairs);
   }
-  std::vector<std::string> report;
-  addReport(settings.report, report);
+  const std::vector<std::string> report = outputsOf(settings.report, {});
   checkOutputs(others, report);
   others.insert(others.end(), report.begin(), report.end());
   // The frames have different names.
-  for (const std::string& frame : settings.frames) {
+  for (const std::string& frame : settings.files) {
     checkOutputs(others, {frame});
   }
 }
-
-void printParameters(const Settings& settings, Console& console) {
-  console.heading(tool_name + " " + SPHERICAL_PARAM_VERSION);
-  console.entry("first", oneLine(settings.inputs[0]));
-  console.entry("second", oneLine(settings.inputs[1]));
-  console.entry("output",
-                oneLine(settings.frames.front()) + " ... " + oneLine(settings.frames.back()));
-  if (!settings.pairs.empty()) {
-    console.entry("pairs", oneLine(settings.pairs));
-  }
-  if (!settings.report.json.empty()) {
-    console.entry("json", oneLine(settings.report.json));
-  }
-  console.entry("align", nameOf(settings.alignment, alignment_names));
-  console.entry("connectivity", nameOf(settings.connectivity, connectivity_names));
-  if (settings.connectivity == MorphConnectivity::Resampled) {
-    console.entry("samples", std::to_string(settings.samples));
-  }
-  console.entry("fit", nameOf(settings.fit, fit_names));
-  console.entry("match", yesOrNo(settings.match));
-  printProductOptions(settings.product, console);
-}
-
-/// A pair of the file that could not be honoured.
-struct LostPair {
-  FilePair pair;
-  std::string reason;
-};
 
 /// What is written, with its quality.
 struct Morph {
   MorphResult result;
   std::vector<FilePair> pairs;
-  std::vector<LostPair> lost;
+  std::vector<std::string> reasons;  ///< why pairs could not be honoured; empty: they are
   spherical_param::MeshTopology topology;
   std::vector<std::size_t> self_intersections;  ///< of each frame; empty: not counted
   /// Of both shapes, 4 x w, in 0 ... 255; empty unless both have colours.
-  std::array<Eigen::Matrix<double, 4, Eigen::Dynamic>, 2> colors;
+  std::array<Eigen::Matrix4Xd, 2> colors;
   std::vector<spherical_param::StageTime> stages;
   Point offset{};  ///< of the coordinates that are written
 
-  bool hasColors() const { return colors[0].cols() > 0; }
+  bool hasColors() const { return colors[0].cols() > 0 && colors[1].cols() > 0; }
+  std::size_t vertexCount() const { return static_cast<std::size_t>(result.first.cols()); }
+  std::ptrdiff_t honoured() const { return std::count(reasons.begin(), reasons.end(), ""); }
 };
-
-Eigen::Matrix<double, 4, Eigen::Dynamic> colorsAt(const MappedCloud& mapped,
-                                                  const std::vector<SphereLocation>& places) {
-  Eigen::Matrix<double, 4, Eigen::Dynamic> colors(4, static_cast<Eigen::Index>(places.size()));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-    for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      const Index vertex = mapped.mesh.triangles(corner, places[i].triangle);
-      const Color& color = mapped.colors[static_cast<std::size_t>(vertex)];
-      sum += places[i].weights[corner] * Eigen::Vector4d(color[0], color[1], color[2], color[3]);
-    }
-    colors.col(static_cast<Eigen::Index>(i)) = sum;
-  }
-  return colors;
-}
 
 /// Moves and scales the second shape to the place and the area of the first.
 void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
@@ -324,6 +200,27 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
   morph.second = (scale * (morph.second.colwise() - centers[1])).colwise() + centers[0];
 }
 
+/// Hands the pairs over to the library that are vertices. \return their places in the file
+std::vector<std::size_t> addPairs(Morph& morph, spherical_param::MorphOptions& options) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
+    const FilePair& pair = morph.pairs[i];
+    morph.reasons.emplace_back();
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (pair.vertices[side] < 0) {
+        morph.reasons.back() = "point " + std::to_string(pair.points[side]) + " of the " +
+                               (side == 0 ? "first" : "second") +
+                               " cloud is not finite, or was left out as an outlier";
+      }
+    }
+    if (morph.reasons.back().empty()) {
+      options.pairs.push_back({pair.vertices[0], pair.vertices[1]});
+      places.push_back(i);
+    }
+  }
+  return places;
+}
+
 void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
                Console& console) {
   spherical_param::MorphOptions options;
@@ -331,58 +228,27 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
   options.connectivity = settings.connectivity;
   options.samples = settings.samples;
   options.threads = settings.threads();
-  options.progress = [&console](const spherical_param::Progress& progress) {
-    console.update(progress.fraction);
-    return true;
-  };
-  std::vector<std::size_t> numbers;  // of the pairs, among those of the file
-  for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
-    const FilePair& pair = morph.pairs[i];
-    if (pair.vertices[0] >= 0 && pair.vertices[1] >= 0) {
-      options.pairs.push_back({pair.vertices[0], pair.vertices[1]});
-      numbers.push_back(i);
-    }
-  }
+  options.progress = console.progress();
+  const std::vector<std::size_t> places = addPairs(morph, options);
   console.begin("morph");
-  const SphereSurface first(clouds[0].mesh.points, clouds[0].mesh.triangles, clouds[0].map.sphere,
-                            {settings.fit, settings.threads(), clouds[0].map.caps});
-  const SphereSurface second(clouds[1].mesh.points, clouds[1].mesh.triangles, clouds[1].map.sphere,
-                             {settings.fit, settings.threads(), clouds[1].map.caps});
-  morph.result = spherical_param::morphSurfaces(first, second, options);
-  std::vector<std::string> reasons(morph.pairs.size());
-  for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (morph.pairs[i].vertices[side] < 0) {
-        reasons[i] = "point " + std::to_string(morph.pairs[i].points[side]) + " of the " +
-                     (side == 0 ? "first" : "second") +
-                     " cloud is not finite, or was left out as an outlier";
-      }
-    }
+  morph.result = spherical_param::morphSurfaces(
+      surfaceOf(clouds[0], settings.fit, settings.threads()),
+      surfaceOf(clouds[1], settings.fit, settings.threads()), options);
+  for (const spherical_param::ImpossiblePair& pair : morph.result.impossible) {
+    morph.reasons[places[pair.pair]] = pair.reason;
   }
-  for (const ImpossiblePair& pair : morph.result.impossible) {
-    reasons[numbers[pair.pair]] = pair.reason;
-  }
-  for (std::size_t i = 0; i < reasons.size(); ++i) {
-    if (!reasons[i].empty()) {
-      morph.lost.push_back({morph.pairs[i], reasons[i]});
-    }
-  }
-  if (!clouds[0].colors.empty() && !clouds[1].colors.empty()) {
-    morph.colors = {colorsAt(clouds[0], morph.result.first_places),
-                    colorsAt(clouds[1], morph.result.second_places)};
-  }
+  morph.colors = {colorsAt(clouds[0], morph.result.first_places, 0.0),
+                  colorsAt(clouds[1], morph.result.second_places, 0.0)};
   if (settings.match) {
     matchSecond(clouds, morph.result);
   }
-  morph.topology = spherical_param::checkTopology(
-      morph.result.triangles, static_cast<std::size_t>(morph.result.first.cols()),
-      settings.threads());
-  morph.stages.push_back(
-      {"morph", console.end(std::to_string(morph.result.first.cols()) + " vertices")});
+  morph.topology = spherical_param::checkTopology(morph.result.triangles, morph.vertexCount(),
+                                                  settings.threads());
+  morph.stages.push_back(console.end(std::to_string(morph.vertexCount()) + " vertices"));
 }
 
 double timeOf(const Settings& settings, std::size_t frame) {
-  return static_cast<double>(frame) / static_cast<double>(settings.frames.size() - 1);
+  return static_cast<double>(frame) / static_cast<double>(settings.frames - 1);
 }
 
 Positions positionsOf(const Settings& settings, const Morph& morph, std::size_t frame) {
@@ -392,7 +258,7 @@ Positions positionsOf(const Settings& settings, const Morph& morph, std::size_t 
 void checkFrames(const Settings& settings, Morph& morph, Console& console) {
   console.begin("verify");
   std::size_t sum = 0;
-  for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
+  for (std::size_t frame = 0; frame < settings.frames; ++frame) {
     spherical_param::Execution execution;
     execution.threads = settings.threads();
     const Positions positions = asWritten(positionsOf(settings, morph, frame));
@@ -402,76 +268,47 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
     sum += morph.self_intersections.back();
     console.update(timeOf(settings, frame));
   }
-  morph.stages.push_back({"verify", console.end(counted(sum, "self-intersection"))});
+  morph.stages.push_back(console.end(counted(sum, "self-intersection")));
 }
 
 /// Stores all frames, none of them under its name yet.
 void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
-           std::vector<std::unique_ptr<OutputFile>>& files, Console& console) {
-  console.begin("write");
-  morph.offset = offsetOf(settings.report, settings.format, *clouds[0].cloud.data);
+           ToolRun& run) {
+  run.console.begin("write");
+  morph.offset = settings.report.offsetOf(settings.format, *clouds[0].cloud.data);
   PointData vertices;
-  const auto count = static_cast<std::size_t>(morph.result.first.cols());
-  if (morph.hasColors()) {
-    vertices.colors.resize(count);
-    vertices.has_alpha = clouds[0].cloud.data->has_alpha || clouds[1].cloud.data->has_alpha;
-  }
-  for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
+  vertices.colors.resize(morph.hasColors() ? morph.vertexCount() : 0);
+  vertices.has_alpha =
+      morph.hasColors() && (clouds[0].cloud.data->has_alpha || clouds[1].cloud.data->has_alpha);
+  for (std::size_t frame = 0; frame < settings.frames; ++frame) {
     const double t = timeOf(settings, frame);
     vertices.points = toPoints(positionsOf(settings, morph, frame));
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < vertices.colors.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      if (morph.hasColors()) {
-        const Eigen::Vector4d color =
-            (1.0 - t) * morph.colors[0].col(column) + t * morph.colors[1].col(column);
-        for (std::size_t channel = 0; channel < 4; ++channel) {
-          // To the nearest.
-          const double value = color[static_cast<Eigen::Index>(channel)] + 0.5;
-          vertices.colors[i][channel] =
-              static_cast<std::uint8_t>(std::min(std::max(value, 0.0), 255.0));
-        }
-      }
+      const Eigen::Vector4d color =
+          (1.0 - t) * morph.colors[0].col(column) + t * morph.colors[1].col(column);
+      vertices.colors[i] = truncated(color + Eigen::Vector4d::Constant(0.5));
     }
-    files.push_back(std::make_unique<OutputFile>(settings.frames[frame]));
     MeshView mesh(vertices, morph.result.triangles);
     mesh.shiftBy(morph.offset);
-    writeMesh(*files.back(), mesh, settings.format, settings.report.encoding);
-    files.back()->finish();
-    console.update(t);
+    OutputFile& file = run.open(settings.files[frame]);
+    writeMesh(file, mesh, settings.format, settings.report.encoding());
+    file.finish();  // not all of them are open at a time
+    run.console.update(t);
   }
-  morph.stages.push_back({"write", console.end(counted(settings.frames.size(), "frame"))});
+  morph.stages.push_back(run.console.end(counted(settings.frames, "frame")));
 }
 
-Json optionsToJson(const Settings& settings) {
-  Json json;
-  json["frames"] = settings.frames.size();
-  json["pairs"] = settings.pairs.empty() ? Json(nullptr) : Json(settings.pairs);
-  json["align"] = nameOf(settings.alignment, alignment_names);
-  json["connectivity"] = nameOf(settings.connectivity, connectivity_names);
-  json["samples"] = settings.connectivity == MorphConnectivity::Resampled ? Json(settings.samples)
-                                                                          : Json(nullptr);
-  json["fit"] = nameOf(settings.fit, fit_names);
-  json["match"] = settings.match;
-  json["check"] = settings.check;
-  const Json product = productOptionsToJson(settings.product);
-  for (const auto& [name, value] : product.items()) {
-    json[name] = value;
-  }
-  addToJson(settings.report, json);
-  return json;
-}
-
-Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
-            const Morph& morph) {
+Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const Morph& morph) {
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
-  json["inputs"] = {settings.inputs[0], settings.inputs[1]};
+  json["inputs"] = settings.inputs;
   json["output"] = settings.output;
   json["offset"] = morph.offset;
-  json["options"] = optionsToJson(settings);
-  json["frames"] = settings.frames.size();
-  json["files"] = settings.frames;
-  json["vertices"] = morph.result.first.cols();
+  json["options"] = optionsToJson(optionsOf(settings));
+  json["frames"] = settings.frames;
+  json["files"] = settings.files;
+  json["vertices"] = morph.vertexCount();
   json["triangles"] = morph.result.triangles.cols();
   json["closed"] = morph.topology.closed;
   json["manifold"] = morph.topology.manifold();
@@ -484,13 +321,15 @@ Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
   }
   json["alignment_error"] = morph.result.alignment_error;
   Json impossible = Json::array();
-  for (const LostPair& lost : morph.lost) {
-    impossible.push_back({{"line", lost.pair.line},
-                          {"points", {lost.pair.points[0], lost.pair.points[1]}},
-                          {"reason", lost.reason}});
+  for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
+    if (!morph.reasons[i].empty()) {
+      impossible.push_back({{"line", morph.pairs[i].line},
+                            {"points", morph.pairs[i].points},
+                            {"reason", morph.reasons[i]}});
+    }
   }
   json["pairs"] = {{"given", morph.pairs.size()},
-                   {"honoured", morph.pairs.size() - morph.lost.size()},
+                   {"honoured", morph.honoured()},
                    {"worst_pair", morph.result.worst_pair},
                    {"impossible", impossible}};
   json["self_intersections"] = settings.check ? Json(morph.self_intersections) : Json(nullptr);
@@ -511,78 +350,74 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
     printMap(mapped, console);
   }
   console.entry("alignment error", formatted(morph.result.alignment_error, 4));
-  console.entry("morph", std::to_string(morph.result.first.cols()) + " vertices, " +
+  console.entry("morph", std::to_string(morph.vertexCount()) + " vertices, " +
                              std::to_string(morph.result.triangles.cols()) + " triangles");
-  console.entry("closed manifold", yesOrNo(morph.topology.isSphere()));
+  console.entry("closed manifold", morph.topology.isSphere() ? "yes" : "no");
   if (!morph.pairs.empty()) {
-    console.entry("pairs", std::to_string(morph.pairs.size() - morph.lost.size()) + " of " +
+    console.entry("pairs", std::to_string(morph.honoured()) + " of " +
                                std::to_string(morph.pairs.size()) + " honoured");
   }
-  Summary summary;
+  Summary both;
   for (std::size_t side = 0; side < 2; ++side) {
+    const std::string& input = settings.inputs[side];
     const CloudReconstruction& cloud = clouds[side].cloud;
-    const std::string of = (side == 0 ? "" : "; ") + settings.inputs[side] + ": ";
-    summary.read += of + counted(cloud.data->points.size(), "point");
-    summary.verdict +=
-        (side == 0 ? "" : " ") + settings.inputs[side] + ": " + cloud.surface().verdict;
-    summary.left_out += of + leftOut(cloud);
+    const std::string of = (side == 0 ? "" : "; ") + input + ": ";
+    both.read += of + counted(cloud.data->points.size(), "point");
+    both.verdict += (side == 0 ? "" : " ") + input + ": " + cloud.result.verdict;
+    both.left_out += of + leftOut(cloud);
   }
-  summary.made =
-      counted(static_cast<std::size_t>(morph.result.first.cols()), "vertex", "vertices") + ", " +
-      counted(static_cast<std::size_t>(morph.result.triangles.cols()), "triangle");
-  summary.written = {settings.frames.front() +
-                     (settings.frames.size() > 1 ? " to " + settings.frames.back() : "")};
-  summary.written.front() += notWritten(morph.hasColors(), settings.format, morph.offset);
-  addReport(settings.report, summary.written);
-  console.summary(summary);
+  both.made = meshSize(morph.vertexCount(), morph.result.triangles.cols());
+  both.written =
+      outputsOf(settings.report, {settings.files.front() + " to " + settings.files.back()});
+  both.written.front() += notWritten(morph.hasColors(), settings.format, morph.offset);
+  console.summary(both);
 }
 
 void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
+  Settings settings;
+  const OptionTable options = optionsOf(settings);
+  const CommandLine command_line(words, options);
+  if (answerHelpOrVersion(command_line, toolText(), options)) {
     return;
   }
-  const Settings settings = parseSettings(command_line);
+  parse(command_line, settings);
   checkFiles(settings);
-
-  Console console(settings.report.detail());
-  printParameters(settings, console);
-
+  ToolRun run(settings.report, settings.product.reconstruction.strict, toolText().name,
+              {{"first", settings.inputs[0]},
+               {"second", settings.inputs[1]},
+               {"output", settings.files.front() + " ... " + settings.files.back()}},
+              options);
   std::array<MappedCloud, 2> clouds;
   Morph morph;
   for (std::size_t side = 0; side < 2; ++side) {
-    mapCloud(settings.inputs[side], settings.product, console, clouds[side]);
+    mapCloud(settings.inputs[side], settings.product, run.console, clouds[side]);
   }
   if (!settings.pairs.empty()) {
     morph.pairs = readPointPairs(settings.pairs, clouds[0].cloud, clouds[1].cloud);
   }
   runLibrary("cannot morph", kReportIt, [&] {
-    makeMorph(settings, clouds, morph, console);
+    makeMorph(settings, clouds, morph, run.console);
     if (settings.check) {
-      checkFrames(settings, morph, console);
+      checkFrames(settings, morph, run.console);
     }
   });
-  std::vector<std::unique_ptr<OutputFile>> files;
-  store(settings, clouds, morph, files, console);
-  publish(
-      settings.report, files, console, [&] { return report(settings, clouds, morph); },
-      [&] { printVerdict(settings, clouds, morph, console); });
-  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, false);
-  bool is_usable = true;
+  store(settings, clouds, morph, run);
+  run.publish([&] { return report(settings, clouds, morph); },
+              [&] { printVerdict(settings, clouds, morph, run.console); });
   for (std::size_t side = 0; side < 2; ++side) {
-    findings.add(settings.inputs[side], findingsOf(clouds[side]));
-    is_usable = is_usable && clouds[side].cloud.surface().isUsable();
+    run.add(settings.inputs[side], findingsOf(clouds[side]));
   }
-  for (const LostPair& lost : morph.lost) {
-    findings.add("the pair of line " + std::to_string(lost.pair.line) +
-                 " is impossible: " + lost.reason);
+  for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
+    if (!morph.reasons[i].empty()) {
+      run.addFailure("the pair of line " + std::to_string(morph.pairs[i].line) +
+                     " is impossible: " + morph.reasons[i]);
+    }
   }
-  findings.print();
-  findings.requireSoundness(is_usable);
+  run.conclude(clouds[0].cloud.surface().isUsable() && clouds[1].cloud.surface().isUsable());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(tool_name, argc, argv, run);
+  return runTool(toolText().name, argc, argv, run);
 }

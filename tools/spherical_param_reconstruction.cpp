@@ -1,29 +1,20 @@
 // pcl_spherical_param_reconstruction: meshes the point cloud of a file.
 
 #include "common/cloud_reconstruction.h"
-#include "common/command_line.h"
-#include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/findings.h"
 #include "common/html_report.h"
-#include "common/json_report.h"
-#include "common/mesh_writer.h"
-#include "common/output_file.h"
-#include "common/output_options.h"
-#include "common/reconstruction_options.h"
 #include "common/reconstruction_report.h"
 #include "common/report_page.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "common/tool_run.h"
 #include "spherical_param/version.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,36 +24,19 @@ using namespace spherical_param::tools;
 using spherical_param::PartsMode;
 using spherical_param::Surface;
 
-const std::string tool_name = "pcl_spherical_param_reconstruction";
-
-const std::vector<OptionInfo> option_table =
-    joined({reconstructionOptions(),
-            {{"sphere", "FILE", "write the points on the sphere with the same triangles"}},
-            htmlReportOptions(),
-            outputOptions()});
-
-/// What each does, and the words after the tool's name.
-const std::vector<std::pair<std::string, std::string>> example_table = {
-    {"The surfaces of a scan", "scan.ply mesh.ply"},
-    {"With its map to the sphere and a page to look at",
-     "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
-    {"A mesh of a noisy scan", "scan.ply mesh.ply -consolidation auto"},
-    {"One closed surface through every point", "scan.ply mesh.ply -topology sphere"},
-};
-
-std::string helpText(bool with_experts) {
-  return "Usage: " + tool_name +
-         " input output [options]\n\n"
-         "Meshes a point cloud into surfaces with the parts, openings and handles that it shows,\n"
-         "or into one closed surface through every point.\n"
-         "  input:  " +
-         extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
-         "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table, with_experts) + "\n" +
-         describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also if the mesh is "
-         "unfit),\n"
-         "2 wrong usage, 3 written but not usable: more than 1 % of the triangles intersect.\n";
+ToolText toolText() {
+  return {"pcl_spherical_param_reconstruction",
+          "input output",
+          "Meshes a point cloud into surfaces with the parts, openings and handles that it shows,\n"
+          "or into one closed surface through every point.\n"
+          "  input:  " +
+              extensionsFor(FileUse::ReadCloud) +
+              "\n  output: " + extensionsFor(FileUse::WriteMesh) + "\n",
+          {{"The surfaces of a scan", "scan.ply mesh.ply"},
+           {"With its map to the sphere and a page to look at",
+            "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
+           {"A mesh of a noisy scan", "scan.ply mesh.ply -consolidation auto"},
+           {"One closed surface through every point", "scan.ply mesh.ply -topology sphere"}}};
 }
 
 /// What the user asked for.
@@ -77,6 +51,18 @@ struct Settings {
   OutputSettings report;
   ReconstructionSettings reconstruction;
 };
+
+OptionTable optionsOf(Settings& settings) {
+  OptionTable page = htmlReportOptions();
+  page.front().value = [&settings] {
+    return settings.page.empty() ? Json(nullptr) : Json(settings.page);
+  };
+  return joined({reconstructionOptions(settings.reconstruction),
+                 {fileOption("sphere", "write the points on the sphere with the same triangles",
+                             settings.sphere)},
+                 page,
+                 outputOptions(settings.report)});
+}
 
 /// In names of files, the number of the part.
 const std::string number_mark = "%03d";
@@ -123,77 +109,38 @@ void checkNumbers(const Settings& settings) {
   }
 }
 
-Settings parseSettings(const CommandLine& command_line) {
-  Settings settings;
-  std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
+void parse(const CommandLine& command_line, Settings& settings) {
+  const std::vector<std::string> files = filesOf(command_line, toolText());
+  settings.input = files[0];
+  settings.output = files[1];
+  command_line.apply(optionsOf(settings));
   requireFormat(settings.input, FileUse::ReadCloud);
   settings.output_format = requireFormat(settings.output, FileUse::WriteMesh);
-  settings.sphere = command_line.value("sphere", "");
-  if (command_line.has("sphere")) {
+  if (!settings.sphere.empty()) {
     settings.sphere_format = requireFormat(settings.sphere, FileUse::WriteMesh);
   }
-  settings.report = parseOutputOptions(command_line);
-  settings.reconstruction = parseReconstructionOptions(command_line);
+  parseReconstructionOptions(command_line, settings.reconstruction);
   settings.page = parseHtmlReport(command_line);
   checkNumbers(settings);
   if (!settings.page.empty()) {
     keepForHtmlReport(settings.reconstruction);
-    settings.command = repeatedCommand(tool_name, command_line, option_table,
-                                       {settings.input, settings.output}, settings.reconstruction);
+    settings.command = repeatedCommand(toolText().name, command_line, optionsOf(settings), files,
+                                       settings.reconstruction);
   }
-  return settings;
 }
 
 /// The files that will be written, the standard output not among them.
 std::vector<std::string> outputsOf(const Settings& settings) {
-  std::vector<std::string> outputs = {settings.output};
-  if (!settings.sphere.empty()) {
-    outputs.push_back(settings.sphere);
-  }
-  if (!settings.page.empty()) {
-    outputs.push_back(settings.page);
-  }
-  addReport(settings.report, outputs);
-  return outputs;
+  return outputsOf(settings.report, {settings.output, settings.sphere, settings.page});
 }
 
-void printParameters(const Settings& settings, Console& console) {
-  console.heading(tool_name + " " + SPHERICAL_PARAM_VERSION);
-  console.entry("input", oneLine(settings.input));
-  console.entry("output", oneLine(settings.output));
-  if (!settings.sphere.empty()) {
-    console.entry("sphere", oneLine(settings.sphere));
-  }
-  if (!settings.page.empty()) {
-    console.entry("report", oneLine(settings.page));
-  }
-  if (!settings.report.json.empty()) {
-    console.entry("json", oneLine(settings.report.json));
-  }
-  printReconstructionOptions(settings.reconstruction, console);
-}
-
-Json optionsToJson(const Settings& settings) {
-  Json json = reconstructionOptionsToJson(settings.reconstruction);
-  json["sphere"] = settings.sphere.empty() ? Json(nullptr) : Json(settings.sphere);
-  json["report"] = settings.page.empty() ? Json(nullptr) : Json(settings.page);
-  addToJson(settings.report, json);
-  return json;
-}
-
-/// The first members of a report.
-Json filesToJson(const Settings& settings) {
+/// The members that are the same for the whole cloud and for each of its parts.
+Json cloudReport(Settings settings, const CloudReconstruction& cloud) {
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
-  json["options"] = optionsToJson(settings);
-  return json;
-}
-
-/// The members that are the same for the whole cloud and for each of its parts.
-Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
-  Json json = filesToJson(settings);
+  json["options"] = optionsToJson(optionsOf(settings));
   json["offset"] = cloud.offset;
   json["points"] = cloud.data->points.size();
   json["left_out"] = toJson(cloud.result.left_out);
@@ -267,67 +214,64 @@ std::string movedBy(const Settings& settings, const std::vector<Surface>& surfac
 void printSummary(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   std::size_t vertices = 0;
-  std::size_t triangles = 0;
+  Eigen::Index triangles = 0;
   for (const Surface& surface : surfaces) {
     if (surfaces.size() > 1) {
       console.heading("\nsurface of " + counted(surface.inputs.size(), "point"));
     }
     printTables(surface, console);
     vertices += surface.vertexCount();
-    triangles += static_cast<std::size_t>(surface.triangles.cols());
+    triangles += surface.triangles.cols();
   }
-  console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"),
-                   cloud.result.verdict,
-                   counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
-                   leftOut(cloud), writtenFiles(settings, cloud), movedBy(settings, surfaces)});
+  Summary summary = summaryOf(settings.input, cloud);
+  summary.made = meshSize(vertices, triangles);
+  summary.written = writtenFiles(settings, cloud);
+  summary.moved = movedBy(settings, surfaces);
+  console.summary(summary);
 }
 
-using Files = std::vector<std::unique_ptr<OutputFile>>;
-
 void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction& cloud,
-                   Console& console, Files& files) {
+                   ToolRun& run) {
   mesh.shiftBy(cloud.offset);
-  console.begin("write");
-  files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding,
-            [&](double fraction) { console.update(fraction); });
-  files.back()->finish();
-  cloud.stages.push_back({"write", console.end("")});
+  run.console.begin("write");
+  OutputFile& file = run.open(settings.output);
+  writeMesh(file, mesh, settings.output_format, settings.report.encoding(), run.console.updates());
+  file.finish();
+  cloud.stages.push_back(run.console.end());
 }
 
 /// Writes the sphere and the page of a surface, where they are wanted.
 void writeViews(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
-                Console& console, Files& files) {
+                ToolRun& run) {
   if (!settings.sphere.empty()) {
-    files.push_back(std::make_unique<OutputFile>(settings.sphere));
-    writeMesh(*files.back(), sphereOf(cloud, surface, surface.sphere), settings.sphere_format,
-              settings.report.encoding, {});
-    files.back()->finish();
+    OutputFile& file = run.open(settings.sphere);
+    writeMesh(file, sphereOf(cloud, surface, surface.sphere), settings.sphere_format,
+              settings.report.encoding());
+    file.finish();
   }
   if (!settings.page.empty()) {
-    console.begin("report");
-    files.push_back(std::make_unique<OutputFile>(settings.page));
-    writeHtmlReport(*files.back(), reportPage(),
-                    {tool_name, settings.command, report(settings, cloud, surface), &cloud,
+    run.console.begin("report");
+    OutputFile& file = run.open(settings.page);
+    writeHtmlReport(file, reportPage(),
+                    {toolText().name, settings.command, report(settings, cloud, surface), &cloud,
                      &surface, settings.reconstruction.options.threads});
-    files.back()->finish();
-    cloud.stages.push_back({"report", console.end("")});
+    file.finish();
+    cloud.stages.push_back(run.console.end());
   }
 }
 
 /// Several surfaces go to one file, with the views of the largest, or to numbered files.
-void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& console,
-                Files& files) {
+void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& run) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   if (!isNumbered(settings.output)) {
-    writeMeshFile(settings, JoinedMesh(cloud).view(), cloud, console, files);
-    writeViews(settings, cloud, surfaces.front(), console, files);
+    writeMeshFile(settings, JoinedMesh(cloud).view(), cloud, run);
+    writeViews(settings, cloud, surfaces.front(), run);
     return;
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Settings of_part = settingsOf(settings, i);
     checkOutputs({settings.input}, outputsOf(of_part));
-    writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, console, files);
+    writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, run);
     // Those without a number are of the largest.
     Settings of_views = of_part;
     if (i > 0 && !isNumbered(settings.sphere)) {
@@ -336,47 +280,44 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& c
     if (i > 0 && !isNumbered(settings.page)) {
       of_views.page.clear();
     }
-    writeViews(of_views, cloud, surfaces[i], console, files);
+    writeViews(of_views, cloud, surfaces[i], run);
   }
 }
 
 void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
+  Settings settings;
+  const OptionTable options = optionsOf(settings);
+  const CommandLine command_line(words, options);
+  if (answerHelpOrVersion(command_line, toolText(), options)) {
     return;
   }
-  const Settings settings = parseSettings(command_line);
+  parse(command_line, settings);
   checkOutputs({settings.input}, outputsOf(settingsOf(settings, 0)));
-
-  Console console(settings.report.detail());
-  printParameters(settings, console);
+  ToolRun run(settings.report, settings.reconstruction.strict, toolText().name,
+              {{"input", settings.input}, {"output", settings.output}}, options);
   CloudReconstruction cloud;
-  reconstructCloud(settings.input, settings.reconstruction, console, cloud);
-  cloud.offset = offsetOf(settings.report, settings.output_format, *cloud.data);
+  reconstructCloud(settings.input, settings.reconstruction, run.console, cloud);
+  cloud.offset = settings.report.offsetOf(settings.output_format, *cloud.data);
   if (!settings.sphere.empty()) {
     requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
   }
-  Files files;
-  writeFiles(settings, cloud, console, files);
-  publish(
-      settings.report, files, console,
+  writeFiles(settings, cloud, run);
+  run.publish(
       [&] {
         const bool is_list = cloud.result.surfaces.size() > 1 ||
                              settings.reconstruction.options.parts == PartsMode::Each;
         return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
       },
-      [&] { printSummary(settings, cloud, console); });
-  Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());
+      [&] { printSummary(settings, cloud, run.console); });
   for (const std::string& failure : cloud.result.failures) {
-    findings.add(failure);
+    run.addFailure(failure);
   }
-  findings.add("", cloud.result.findings);
-  findings.print();
-  findings.requireSoundness(cloud.result.isUsable());
+  run.add("", cloud.result.findings);
+  run.conclude(cloud.result.isUsable(), settings.page.empty() ? "-report report.html" : "");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(tool_name, argc, argv, run);
+  return runTool(toolText().name, argc, argv, run);
 }

@@ -1,15 +1,13 @@
 // pcl_spherical_param_scan: writes generated scans, so that nothing needs to be downloaded.
 
-#include "common/command_line.h"
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
 #include "common/mesh_writer.h"
-#include "common/numbers.h"
-#include "common/output_options.h"
 #include "common/point_data.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "common/tool_run.h"
 #include "scan_shapes.h"
 
 #include <algorithm>
@@ -23,35 +21,35 @@ namespace {
 
 using namespace spherical_param::tools;
 
-const std::string tool_name = "pcl_spherical_param_scan";
+ToolText toolText() {
+  return {"pcl_spherical_param_scan",
+          "SHAPE output",
+          "Writes points that are spread evenly over a generated surface.\n"
+          "  SHAPE:  a shape or preset, see -list\n  output: " +
+              extensionsFor(FileUse::WriteCloud) + "\n",
+          {{"A scan of a hand to try the other tools on", "hand scan.ply"},
+           {"A noisy one of another size, and the surface that it comes from",
+            "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"}},
+          "0 done, 1 failed, 2 wrong usage."};
+}
 
-const std::vector<OptionInfo> option_table = {
-    {"points", "N",
-     "number of points, 4 to " + std::to_string(kMaxScanPoints) + " (5000, or as the preset says)"},
-    {"noise", "B", "noise along the normal, relative to the mean distance of neighbours (0)"},
-    {"seed", "S", "seed of the random placement (1)"},
-    {"normals", "", "write the normals of the surface, too"},
-    {"truth", "FILE", "write a fine mesh of the surface"},
-    {"list", "", "list the shapes and presets"},
+/// Options besides the shape.
+struct Settings {
+  ScanOptions scan;
+  std::string truth;
+  bool normals = false;
+  bool list = false;
 };
 
-/// What each does, and the words after the tool's name.
-const std::vector<std::pair<std::string, std::string>> example_table = {
-    {"A scan of a hand to try the other tools on", "hand scan.ply"},
-    {"A noisy one of another size, and the surface that it comes from",
-     "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
-};
-
-std::string helpText(bool with_experts) {
-  return "Usage: " + tool_name +
-         " SHAPE output [options]\n\n"
-         "Writes points that are spread evenly over a generated surface.\n"
-         "  SHAPE:  a shape or preset, see -list\n  output: " +
-         extensionsFor(FileUse::WriteCloud) +
-         "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table, with_experts) + "\n" +
-         describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+OptionTable optionsOf(Settings& settings) {
+  return {numberOption("points", "number of points, if no preset says it", settings.scan.points, 4,
+                       kMaxScanPoints),
+          numberOption("noise", "noise along the normal, relative to the distance of neighbours",
+                       settings.scan.noise, 0, 100),
+          numberOption("seed", "seed of the random placement", settings.scan.seed, 0, 1e15),
+          flagOption("normals", "write the normals of the surface, too", settings.normals),
+          fileOption("truth", "write a fine mesh of the surface", settings.truth),
+          flagOption("list", "list the shapes and presets", settings.list)};
 }
 
 struct Preset {
@@ -84,13 +82,13 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
     throw UsageError(words.empty()       ? "the shape is missing"
                      : words.size() == 1 ? "the shape or the output file is missing"
                                          : "one word too many: " + inQuotes(words[2]),
-                     "run '" + tool_name + " SHAPE output [options]', -h shows the options");
+                     "run '" + toolText().name + " SHAPE output [options]', -h shows the options");
   const bool output_first = formatOf(words[0]) && !formatOf(words[1]);
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
 }
 
-ScanOptions parseScanOptions(const std::string& name, const CommandLine& command_line) {
-  ScanOptions scan;
+void parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
+  ScanOptions& scan = settings.scan;
   scan.shape = lowerCase(name);
   for (const Preset& preset : presets)
     if (preset.name == scan.shape) {
@@ -101,56 +99,54 @@ ScanOptions parseScanOptions(const std::string& name, const CommandLine& command
   if (std::none_of(allShapes().begin(), allShapes().end(),
                    [&](const Shape& shape) { return shape.name == scan.shape; }))
     throw UsageError("unknown shape " + inQuotes(name),
-                     "run '" + tool_name + " -list' for the shapes");
-  const std::string points = command_line.value("points", std::to_string(scan.points));
-  scan.points = static_cast<std::size_t>(parseInteger("points", points, {4, kMaxScanPoints}));
-  scan.noise = parseReal("noise", command_line.value("noise", "0"), {0.0, 100.0, true});
-  scan.seed = parseUnsigned("seed", command_line.value("seed", "1"));
-  return scan;
+                     "run '" + toolText().name + " -list' for the shapes");
+  command_line.apply(optionsOf(settings));
 }
 
 void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText))
+  Settings settings;
+  const OptionTable options = optionsOf(settings);
+  const CommandLine command_line(words, options);
+  if (answerHelpOrVersion(command_line, toolText(), options))
     return;
   if (command_line.has("list"))
     return printAll(listText());
   const auto [shape, output] = shapeAndOutput(command_line.others());
-  const ScanOptions options = parseScanOptions(shape, command_line);
+  parse(shape, command_line, settings);
   std::vector<std::string> outputs = {output};
   std::vector<FileFormat> formats = {requireFormat(output, FileUse::WriteCloud)};
-  if (command_line.has("truth")) {
-    outputs.push_back(command_line.value("truth", ""));
-    formats.push_back(requireFormat(outputs[1], FileUse::WriteMesh));
+  if (!settings.truth.empty()) {
+    outputs.push_back(settings.truth);
+    formats.push_back(requireFormat(settings.truth, FileUse::WriteMesh));
   }
   checkOutputs({}, outputs);
 
-  std::vector<std::unique_ptr<OutputFile>> files;
+  std::deque<OutputFile> files;
   const auto write = [&](const PointData& data, const spherical_param::Triangles& triangles) {
     const FileFormat format = formats[files.size()];
-    files.push_back(std::make_unique<OutputFile>(outputs[files.size()]));
-    writeMesh(*files.back(), MeshView(data, triangles), format, Encoding::Binary);
-    files.back()->finish();
+    OutputFile& file = files.emplace_back(outputs[files.size()]);
+    writeMesh(file, MeshView(data, triangles), format, Encoding::Binary);
+    file.finish();
   };
-  const Scan scan = generateScan(options);
+  const Scan scan = generateScan(settings.scan);
   PointData cloud;
   cloud.points = toPoints(scan.points);
-  if (command_line.has("normals"))
+  if (settings.normals)
     cloud.normals = toNormals(scan.normals);
   write(cloud, {});
-  if (command_line.has("truth")) {
-    const TruthMesh truth = referenceMesh(options.shape);
+  if (!settings.truth.empty()) {
+    const TruthMesh truth = referenceMesh(settings.scan.shape);
     PointData vertices;
     vertices.points = toPoints(truth.vertices);
     write(vertices, truth.triangles);
   }
-  printAll(std::to_string(options.points) + " points written to " + oneLine(output) + "\n");
-  for (const auto& file : files)
-    file->commit();
+  printAll(std::to_string(settings.scan.points) + " points written to " + oneLine(output) + "\n");
+  for (OutputFile& file : files)
+    file.commit();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(tool_name, argc, argv, run);
+  return runTool(toolText().name, argc, argv, run);
 }

@@ -92,7 +92,7 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {mesh_tool, {"in\n.las", "out.ply"}, "'in?.las'"},
        {mesh_tool, {"in.xyz", "out"}, "'out' has an extension"},
        {mesh_tool, {"in.xyz", "out.pcd"}, "'out.pcd' has an extension"},
-       {mesh_tool, {"in.xyz", "out.ply", "-sphere", ""}, "has an extension"},
+       {mesh_tool, {"in.xyz", "out.ply", "-sphere", ""}, "is empty"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", ""}, "-json"},
        {mesh_tool, {"in.xyz", "./a.obj", "-sphere", "a.obj"}, "would overwrite"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", "in.xyz"}, "would overwrite"},
@@ -111,7 +111,7 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {remesh_tool, {"in.tif", "out.tif"}, "geometry image"},
        {remesh_tool, {"in.xyz", "out.ply", "-harmonics", ""}, "-harmonics"},
        {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "out.ply"}, "would overwrite"},
-       {morph_tool, {}, "two input files are needed"},
+       {morph_tool, {"a.ply"}, "the second file is missing"},
        {morph_tool, {"in.ply", "in.xyz"}, "the output file"},
        {morph_tool, {"in.ply", "in.xyz", "m.ply", "n.ply"}, "one file too many"},
        {morph_tool, {"in.ply", "in.xyz", "m.xyz"}, "m.xyz"},
@@ -169,7 +169,7 @@ TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.tif"},
                        {{{"-side", "10"}, "10 is even"}, {{"-side", "1"}, "-side"}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
-                       {{{"-grid", "cubic"}, "'cubic' is unknown"},
+                       {{{"-grid", "cubic"}, "'cubic' is not allowed"},
                         {{"-harmonics", "c.json", "-degree", "513"}, "-degree"},
                         {{"-area-weight", "1.1"}, "-area-weight"},
                         {{"-map-sweeps", "1001"}, "-map-sweeps"}});

@@ -5,6 +5,7 @@
 #include "common/text.h"
 #include "spherical_param/mesh_measures.h"
 
+#include <functional>
 #include <utility>
 
 namespace spherical_param::tools {
@@ -42,63 +43,46 @@ std::shared_ptr<const PointData> withNormals(PointData data, const CloudReconstr
   return std::make_shared<PointData>(std::move(data));
 }
 
-/// Progress of the library on the console: each stage begins when the one before ends.
-class StageProgress {
-public:
-  explicit StageProgress(Console& console) : console_(console) {}
-
-  bool operator()(const Progress& progress) {
-    if (progress.parts > 1 && progress.part != part_) {
-      finish();
-      part_ = progress.part;
-      console_.heading("\npart " + std::to_string(part_ + 1) + " of " +
-                       std::to_string(progress.parts));
-    }
-    if (stage_ != progress.stage) {
-      finish();
-      stage_ = progress.stage;
-      console_.begin(stage_);
-    }
-    console_.update(progress.fraction);
-    return true;
-  }
-
-  /// Ends the last stage.
-  void finish() {
-    if (!stage_.empty()) {
-      console_.end("");
-      stage_.clear();
-    }
-  }
-
-private:
-  Console& console_;
-  std::string stage_;
-  std::size_t part_ = static_cast<std::size_t>(-1);
-};
-
 }  // namespace
 
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud) {
   console.begin("read");
-  cloud.data = std::make_shared<PointData>(readCloud(
-      path, [&console](double fraction) { console.update(fraction); }, settings.columns));
+  cloud.data = std::make_shared<PointData>(readCloud(path, console.updates(), settings.columns));
   const std::string& contents = cloud.data->contents;
-  const double seconds = console.end(std::to_string(cloud.data->points.size()) + " points" +
-                                     (contents.empty() ? "" : "; " + contents));
-  StageProgress progress(console);
+  cloud.stages = {console.end(std::to_string(cloud.data->points.size()) + " points" +
+                              (contents.empty() ? "" : "; " + contents))};
+  std::string stage;
+  std::size_t part = 0;  // from 1
+  // Each stage begins when the one before ends.
+  const auto show = [&](const Progress& progress) {
+    const bool is_new_part = progress.parts > 1 && part != progress.part + 1;
+    if (is_new_part || stage != progress.stage) {
+      if (!stage.empty()) {
+        console.end();
+      }
+      if (is_new_part) {
+        part = progress.part + 1;
+        console.heading("\npart " + std::to_string(part) + " of " + std::to_string(progress.parts));
+      }
+      stage = progress.stage;
+      console.begin(stage);
+    }
+    console.update(progress.fraction);
+    return true;
+  };
   Options options = settings.options;
-  options.progress = [&progress](const Progress& reported) { return progress(reported); };
+  options.progress = std::cref(show);
   runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud", [&] {
     cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, infoOf(*cloud.data));
   });
-  progress.finish();
+  if (!stage.empty()) {
+    console.end();
+  }
   if (cloud.data->has_null_normals) {
     cloud.data = withNormals(*cloud.data, cloud);
   }
-  cloud.stages = cloud.result.stages;
-  cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
+  cloud.stages.insert(cloud.stages.end(), cloud.result.stages.begin(), cloud.result.stages.end());
 }
 
 void requireSpheres(const std::string& path, const CloudReconstruction& cloud, bool of_all) {
@@ -143,6 +127,19 @@ std::string leftOut(const CloudReconstruction& cloud) {
   }
   add(cloud.result.left_out.text());
   return text.empty() ? "nothing" : text;
+}
+
+Summary summaryOf(const std::string& path, const CloudReconstruction& cloud) {
+  return {path + ", " + counted(cloud.data->points.size(), "point"),
+          cloud.result.verdict,
+          "",
+          leftOut(cloud),
+          {}};
+}
+
+std::string meshSize(std::size_t vertices, Eigen::Index triangles) {
+  return counted(vertices, "vertex", "vertices") + ", " +
+         counted(static_cast<std::size_t>(triangles), "triangle");
 }
 
 Positions vertexPositions(const CloudReconstruction& cloud, const Surface& surface) {

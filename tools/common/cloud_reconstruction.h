@@ -36,6 +36,12 @@ void requireSpheres(const std::string& path, const CloudReconstruction& cloud, b
 /// What was left out of a cloud and why, or "nothing".
 std::string leftOut(const CloudReconstruction& cloud);
 
+/// What was read, the verdict and what was left out.
+Summary summaryOf(const std::string& path, const CloudReconstruction& cloud);
+
+/// The size of a mesh in words.
+std::string meshSize(std::size_t vertices, Eigen::Index triangles);
+
 /// The positions of the vertices of a surface: consolidated and smoothed, if that was asked for
 /// [unit of the file].
 Positions vertexPositions(const CloudReconstruction& cloud, const Surface& surface);

@@ -1,11 +1,8 @@
 #include "common/command_line.h"
 
 #include "common/errors.h"
+#include "common/numbers.h"
 #include "common/text.h"
-
-#include <boost/program_options/errors.hpp>
-#include <boost/program_options/options_description.hpp>
-#include <boost/program_options/parsers.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,14 +11,9 @@
 namespace spherical_param::tools {
 namespace {
 
-namespace po = boost::program_options;
-
+constexpr std::size_t help_column = 39;
 constexpr std::size_t help_width = 100;
-
-/// Options that every tool has.
-std::vector<OptionInfo> commonOptions() {
-  return {{"h", "", "", false}, {"help", "", "", false}, {"version", "", "", false}};
-}
+constexpr const char* see_help = "run the tool with -h for the options and their values";
 
 /// The least number of letters to insert, leave out or replace that makes one word of another.
 std::size_t editDistance(const std::string& from, const std::string& to) {
@@ -38,153 +30,225 @@ std::size_t editDistance(const std::string& from, const std::string& to) {
 }
 
 /// \param word as it was given, with dashes and perhaps a value.
-UsageError unknownOption(const std::string& word, const std::vector<OptionInfo>& options) {
-  const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
-  const std::string name = word.substr(begin, word.find('=') - begin);
-  const auto nearest = std::min_element(
-      options.begin(), options.end(), [&name](const OptionInfo& a, const OptionInfo& b) {
-        return editDistance(name, a.name) < editDistance(name, b.name);
-      });
-  const bool is_near = 2 * editDistance(name, nearest->name) <= name.size();
-  return {"unrecognised option " + inQuotes(word),
-          (is_near ? "did you mean -" + nearest->name + "? " : "") +
-              "-h shows the options, -h expert all of them"};
+[[noreturn]] void failUnknown(const std::string& word, const std::string& name,
+                              const OptionTable& options) {
+  const auto distance = [&name](const OptionInfo& a) { return editDistance(name, a.name); };
+  const auto nearest =
+      std::min_element(options.begin(), options.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  throw UsageError(
+      "unrecognised option " + inQuotes(word),
+      (2 * distance(*nearest) <= name.size() ? "did you mean -" + nearest->name + "? " : "") +
+          "-h shows the options, -h expert all of them");
 }
 
-/// Whether a word is one of the options. Boost would take it for the value of the one before.
-bool isKnown(const std::string& word, const std::vector<OptionInfo>& options) {
-  return std::any_of(options.begin(), options.end(), [&word](const OptionInfo& option) {
-    return word == "-" + option.name || word == "--" + option.name;
-  });
+/// The name in a word such as -name, --name or --name=value.
+std::string nameIn(const std::string& word) {
+  const std::size_t begin = word.rfind("--", 0) == 0 ? 2 : 1;
+  return word.substr(begin, word.find('=') - begin);
 }
 
-/// Boost takes an unknown option with one dash for a word like any other. Words after "--" may
-/// begin with a dash, and a lone dash is no option.
-void refuseUnknownOptions(const std::vector<std::string>& words,
-                          const std::vector<std::string>& others,
-                          const std::vector<OptionInfo>& options) {
-  const auto terminator = std::find(words.begin(), words.end(), "--");
-  const auto after = terminator == words.end() ? 0 : words.end() - terminator - 1;
-  const auto end = others.end() - std::min<std::ptrdiff_t>(after, others.end() - others.begin());
-  const auto unknown = std::find_if(others.begin(), end, [](const std::string& word) {
-    return word.size() > 1 && word[0] == '-';
-  });
-  if (unknown != end) {
-    throw unknownOption(*unknown, options);
+/// A word with a dash that stands for an option; a lone dash stands for none.
+bool isOption(const std::string& word) {
+  return word.size() > 1 && word[0] == '-';
+}
+
+const OptionInfo* knownOption(const std::string& name, const OptionTable& options) {
+  const auto found = std::find_if(options.begin(), options.end(),
+                                  [&](const OptionInfo& option) { return option.name == name; });
+  return found == options.end() ? nullptr : &*found;
+}
+
+OptionValue parseValue(const OptionRow& row, const std::string& flag, const std::string& text) {
+  if (std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end()) {
+    return text;
   }
+  std::optional<double> number = row.is_number ? toReal(text) : std::nullopt;
+  if (row.is_integer && !toInteger(text)) {
+    number.reset();
+  }
+  if (!number || !(*number >= row.min && *number <= row.max) ||
+      (row.min_excluded && *number == row.min)) {
+    throw UsageError("option -" + flag + ": " + inQuotes(text) + " is not allowed",
+                     "give -" + flag + " " + rangeOf(row));
+  }
+  return row.is_integer ? OptionValue(static_cast<std::int64_t>(*number)) : OptionValue(*number);
+}
+
+std::string replaced(std::string text, char from, char to) {
+  std::replace(text.begin(), text.end(), from, to);
+  return text;
 }
 
 }  // namespace
 
-CommandLine::CommandLine(const std::vector<std::string>& words,
-                         const std::vector<OptionInfo>& options) {
-  std::vector<OptionInfo> known = commonOptions();
-  known.insert(known.end(), options.begin(), options.end());
-  po::options_description description;
-  for (const OptionInfo& option : known) {
-    if (option.argument.empty()) {
-      description.add_options()(option.name.c_str(), "");
-    } else {
-      description.add_options()(option.name.c_str(), po::value<std::string>(), "");
-    }
-  }
-
-  // No short options: "-k" is the long option k with one dash, as "-graph" is.
-  namespace style = po::command_line_style;
-  const int accepted = style::allow_long | style::long_allow_adjacent | style::long_allow_next |
-                       style::allow_long_disguise;
-  try {
-    const auto parsed = po::command_line_parser(words).options(description).style(accepted).run();
-    for (const po::option& option : parsed.options) {
-      const std::string value = option.value.empty() ? std::string() : option.value.front();
-      if (option.position_key >= 0 || option.string_key.empty()) {
-        others_.push_back(value);
-      } else if (isKnown(value, known)) {
-        throw UsageError("option -" + option.string_key + " has no value, as " + inQuotes(value) +
-                             " is an option itself",
-                         "run the tool with -h for the options and their values");
-      } else if (!values_.emplace(option.string_key, value).second) {
-        throw UsageError("option -" + option.string_key + " is given more than once",
-                         "give it once");
-      }
-    }
-  } catch (const po::unknown_option& error) {
-    throw unknownOption(error.get_option_name(), known);
-  } catch (const po::error& error) {
-    // Boost writes all names with two dashes.
-    std::string message = error.what();
-    const std::size_t dashes = message.find("'--");
-    if (dashes != std::string::npos) {
-      message.erase(dashes + 1, 1);
-    }
-    throw UsageError(message, "run the tool with -h for the options and their values");
-  }
-  refuseUnknownOptions(words, others_, known);
-}
-
-std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_line,
-                                                   const std::string& tool) {
-  const std::vector<std::string>& files = command_line.others();
-  if (files.size() != 2) {
-    throw UsageError(files.empty()       ? "the input file is missing"
-                     : files.size() == 1 ? "the output file is missing"
-                                         : "one file too many: " + inQuotes(files[2]),
-                     "run '" + tool + " input output [options]', -h shows the options");
-  }
-  return {files[0], files[1]};
-}
-
-std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables) {
-  std::vector<OptionInfo> all;
-  for (const std::vector<OptionInfo>& table : tables) {
+OptionTable joined(const std::vector<OptionTable>& tables) {
+  OptionTable all;
+  for (const OptionTable& table : tables) {
     all.insert(all.end(), table.begin(), table.end());
   }
   return all;
 }
 
-std::string describeOptions(const std::vector<OptionInfo>& options, bool with_experts) {
-  std::size_t width = 0;
-  for (const OptionInfo& option : options) {
-    if (with_experts || !option.expert) {
-      width = std::max(width, option.name.size() + option.argument.size());
-    }
-  }
-  const auto list = [&](bool of_experts) {
-    std::string text;
-    for (const OptionInfo& option : options) {
-      if (option.expert == of_experts) {
-        const std::string left =
-            "  -" + option.name + (option.argument.empty() ? "" : " " + option.argument);
-        text += left + std::string(width + 6 - left.size(), ' ');
-        std::size_t column = width + 6;
-        for (const std::string_view word : split(option.help, " ")) {
-          if (column + word.size() > help_width) {
-            text.pop_back();
-            text += "\n" + std::string(width + 6, ' ');
-            column = width + 6;
-          }
-          text += std::string(word) + " ";
-          column += word.size() + 1;
-        }
-        text.back() = '\n';
-      }
-    }
-    return text;
-  };
-  const bool has_experts = std::any_of(options.begin(), options.end(),
-                                       [](const OptionInfo& option) { return option.expert; });
-  return list(false) + (!has_experts   ? ""
-                        : with_experts ? "\nExpert options:\n" + list(true)
-                                       : "\nAll options: -h expert, version: -version\n");
+OptionRow rowOf(const std::string& name, const std::string& help) {
+  OptionRow row;
+  row.name = name;
+  row.help = help;
+  return row;
 }
 
-std::string describeExamples(const std::string& tool,
-                             const std::vector<std::pair<std::string, std::string>>& examples) {
-  std::string text = "Examples:\n";
-  for (const auto& [remark, words] : examples) {
-    text += "  " + remark + "\n    " + tool + " " + words + "\n";
+OptionInfo optionOf(const OptionRow& row, const std::function<OptionValue()>& get,
+                    const std::function<void(const OptionValue&)>& set) {
+  std::vector<std::string> arguments = row.choices;
+  if (row.is_number) {
+    arguments.emplace_back(row.is_integer ? "N" : "X");
+  }
+  std::string argument;
+  for (const std::string& each : arguments) {
+    argument += (argument.empty() ? "" : "|") + each;
+  }
+  const std::string flag = replaced(row.name, '_', '-');
+  return {flag,
+          argument,
+          row.help + (row.is_number ? "; " + rangeOf(row) : "") + " (" +
+              spherical_param::textOf(get()) + ")",
+          row.expert,
+          [=](const std::string& text) { set(parseValue(row, flag, text)); },
+          [=] { return toJson(get()); }};
+}
+
+Json toJson(const OptionValue& value) {
+  return std::visit(
+      [](const auto& content) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(content)>, std::monostate>) {
+          return nullptr;
+        } else {
+          return content;
+        }
+      },
+      value);
+}
+
+OptionInfo flagOption(const std::string& name, const std::string& help, bool& field) {
+  return {name,
+          "",
+          help,
+          false,
+          [&field](const std::string& /*text*/) { field = true; },
+          [&field] { return Json(field); }};
+}
+
+OptionInfo fileOption(const std::string& name, const std::string& help, std::string& field) {
+  return {name,
+          "FILE",
+          help,
+          false,
+          [name, &field](const std::string& text) {
+            if (text.empty()) {
+              throw UsageError("option -" + name + ": the name of the file is empty",
+                               "give a file");
+            }
+            field = text;
+          },
+          [&field] { return field.empty() ? Json(nullptr) : Json(field); }};
+}
+
+OptionInfo usedIf(const std::function<bool()>& condition, OptionInfo option) {
+  option.value = [condition, value = option.value] { return condition() ? value() : Json(); };
+  return option;
+}
+
+Json optionsToJson(const OptionTable& options) {
+  Json json;
+  for (const OptionInfo& option : options) {
+    if (option.value) {
+      json[replaced(option.name, '-', '_')] = option.value();
+    }
+  }
+  return json;
+}
+
+std::string describeOptions(const OptionTable& options, bool with_experts) {
+  std::string text;
+  const auto list = [&](bool of_experts) {
+    for (const OptionInfo& option : options) {
+      if (option.expert != of_experts) {
+        continue;
+      }
+      std::string line = "  -" + option.name + " " + option.argument;
+      line.resize(std::max(line.size() + 1, help_column), ' ');
+      for (const std::string_view word : split(option.help, " ")) {
+        if (line.size() + word.size() > help_width) {
+          text += line.substr(0, line.size() - 1) + "\n";
+          line.assign(help_column, ' ');
+        }
+        line += std::string(word) + " ";
+      }
+      text += line.substr(0, line.size() - 1) + "\n";
+    }
+  };
+  list(false);
+  text += with_experts ? "\nExpert options:\n" : "\nAll options: -h expert, version: -version\n";
+  if (with_experts) {
+    list(true);
   }
   return text;
+}
+
+CommandLine::CommandLine(const std::vector<std::string>& words, OptionTable options) {
+  for (const char* name : {"h", "help", "version"}) {
+    options.push_back({name, "", ""});
+  }
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (*word == "--") {
+      others_.insert(others_.end(), word + 1, words.end());
+      break;
+    }
+    if (!isOption(*word)) {
+      others_.push_back(*word);
+      continue;
+    }
+    const std::string name = nameIn(*word);
+    const OptionInfo* const option = knownOption(name, options);
+    const std::size_t equals = word->find('=');
+    std::string value = equals == std::string::npos ? "" : word->substr(equals + 1);
+    if (option == nullptr) {
+      failUnknown(*word, name, options);
+    } else if (option->argument.empty() && equals != std::string::npos) {
+      throw UsageError("option '-" + name + "' does not take any arguments", see_help);
+    } else if (!option->argument.empty() && equals == std::string::npos) {
+      if (++word == words.end()) {
+        throw UsageError("the required argument for option '-" + name + "' is missing", see_help);
+      }
+      value = *word;
+      if (isOption(value) && knownOption(nameIn(value), options) != nullptr) {
+        throw UsageError("option -" + name + " has no value, as " + inQuotes(value) +
+                             " is an option itself",
+                         see_help);
+      }
+    }
+    if (!values_.emplace(name, value).second) {
+      throw UsageError("option -" + name + " is given more than once", "give it once");
+    }
+  }
+}
+
+void CommandLine::apply(const OptionTable& options) const {
+  for (const OptionInfo& option : options) {
+    if (option.take && has(option.name)) {
+      option.take(value(option.name, ""));
+    }
+  }
+}
+
+void CommandLine::refuse(const std::vector<std::string>& options, const std::string& with,
+                         const std::string& instead) const {
+  for (const std::string& option : options) {
+    if (has(option)) {
+      throw UsageError("option -" + option + " does nothing with " + with,
+                       "leave -" + option + " out, or give " + instead);
+    }
+  }
 }
 
 }  // namespace spherical_param::tools

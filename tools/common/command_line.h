@@ -1,20 +1,112 @@
 #pragma once
 
-#include <initializer_list>
+#include "common/json_report.h"
+#include "spherical_param/option_table.h"
+
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
 
-/// An option as the help shows it.
+/// An option of a tool.
 struct OptionInfo {
   std::string name;      ///< without dash
   std::string argument;  ///< what follows it, e.g. "N"; empty for a switch
   std::string help;      ///< one line
   bool expert = false;   ///< listed by `-h expert` alone
+  std::function<void(const std::string&)> take = {};  ///< sets it to a text. \throw UsageError
+  std::function<Json()> value = {};  ///< in force; null: not set, or without effect
 };
+using OptionTable = std::vector<OptionInfo>;
+
+/// Tables of options one after the other.
+OptionTable joined(const std::vector<OptionTable>& tables);
+
+/// A row like those of the library's table.
+OptionRow rowOf(const std::string& name, const std::string& help);
+/// A row as an option of a tool.
+OptionInfo optionOf(const OptionRow& row, const std::function<OptionValue()>& get,
+                    const std::function<void(const OptionValue&)>& set);
+
+/// Options of fields, which must outlive them. The help ends with range and default.
+OptionInfo flagOption(const std::string& name, const std::string& help, bool& field);
+OptionInfo fileOption(const std::string& name, const std::string& help, std::string& field);
+
+/// \param field a number, or an optional one.
+template <typename Field>
+OptionInfo numberOption(const std::string& name, const std::string& help, Field& field, double min,
+                        double max) {
+  constexpr bool is_real = std::is_same_v<Field, double>;
+  OptionRow row = rowOf(name, help);
+  row.is_number = true;
+  row.is_integer = !is_real;
+  row.min = min;
+  row.max = max;
+  const auto get = [&field]() -> OptionValue {
+    const std::optional value = field;
+    using Value = std::conditional_t<is_real, double, std::int64_t>;
+    return value ? OptionValue(static_cast<Value>(*value)) : OptionValue();
+  };
+  return optionOf(row, get, [&field](const OptionValue& value) {
+    using Value = typename decltype(std::optional(field))::value_type;
+    std::visit(
+        [&field](const auto& number) {
+          if constexpr (std::is_arithmetic_v<std::decay_t<decltype(number)>>) {
+            field = static_cast<Value>(number);
+          }
+        },
+        value);
+  });
+}
+
+/// The values of an enumeration with the names that the user gives them.
+template <typename Value>
+using Names = std::vector<std::pair<std::string, Value>>;
+
+/// The name of a value, empty if it has none.
+template <typename Value>
+std::string nameOf(Value value, const Names<Value>& names) {
+  for (const auto& [name, known] : names) {
+    if (known == value) {
+      return name;
+    }
+  }
+  return "";
+}
+
+template <typename Value>
+OptionInfo choiceOption(const std::string& name, const std::string& help, Value& field,
+                        const Names<Value>& names) {
+  OptionRow row = rowOf(name, help);
+  for (const auto& entry : names) {
+    row.choices.push_back(entry.first);
+  }
+  return optionOf(
+      row, [&field, names] { return nameOf(field, names); },
+      [&field, names](const OptionValue& value) {
+        for (const auto& [known, meaning] : names) {
+          field = known == std::get<std::string>(value) ? meaning : field;
+        }
+      });
+}
+
+Json toJson(const OptionValue& value);
+
+/// The option, whose value is null unless a condition holds.
+OptionInfo usedIf(const std::function<bool()>& condition, OptionInfo option);
+
+/// The values by name, where words are joined by underscores.
+Json optionsToJson(const OptionTable& options);
+
+/// The lines of a help text that list the options.
+///
+/// \param with_experts those of experts, too, in a list of their own; else a line that leads to it.
+std::string describeOptions(const OptionTable& options, bool with_experts);
 
 /// A command line in the style of the PCL tools: `-opt value`, `--opt value`, `-opt=value` and
 /// `--opt=value`, in any order with the other words.
@@ -22,48 +114,26 @@ class CommandLine {
 public:
   /// Takes the words apart. The options -h, -help and -version are always known.
   /// \throw UsageError for an unknown or repeated option, or a missing or superfluous value.
-  CommandLine(const std::vector<std::string>& words, const std::vector<OptionInfo>& options);
+  CommandLine(const std::vector<std::string>& words, OptionTable options);
 
   /// Whether the option was given.
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   /// The option's value, or the fallback if it was not given.
   std::string value(const std::string& option, const std::string& fallback) const {
-    const auto found = values_.find(option);
-    return found == values_.end() ? fallback : found->second;
+    return has(option) ? values_.at(option) : fallback;
   }
-  /// All options that were given, with their values; those of switches are empty.
-  const std::map<std::string, std::string>& values() const { return values_; }
   /// The words that belong to no option, in their order.
   const std::vector<std::string>& others() const { return others_; }
 
-  bool wantsHelp() const { return has("h") || has("help"); }
-  /// Whether that of all options is wanted: `-h expert`.
-  bool wantsExpertHelp() const {
-    return wantsHelp() && others_.size() == 1 && others_.front() == "expert";
-  }
-  bool wantsVersion() const { return has("version"); }
+  /// Sets all options that were given. \throw UsageError
+  void apply(const OptionTable& options) const;
+  /// \throw UsageError if an option was given that does nothing with something else
+  void refuse(const std::vector<std::string>& options, const std::string& with,
+              const std::string& instead) const;
 
 private:
   std::map<std::string, std::string> values_;
   std::vector<std::string> others_;
 };
-
-/// The words of a command line that has an input and an output, and no other word.
-/// \throw UsageError
-std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_line,
-                                                   const std::string& tool);
-
-/// Tables of options one after the other.
-std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables);
-
-/// The lines of a help text that list the options.
-///
-/// \param with_experts those of experts, too, in a list of their own; else a line that leads to it.
-std::string describeOptions(const std::vector<OptionInfo>& options, bool with_experts);
-
-/// The lines of a help text with examples: of each what it does, and the words after the tool's
-/// name.
-std::string describeExamples(const std::string& tool,
-                             const std::vector<std::pair<std::string, std::string>>& examples);
 
 }  // namespace spherical_param::tools

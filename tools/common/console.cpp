@@ -8,43 +8,45 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
 namespace spherical_param::tools {
 namespace {
 
-constexpr std::size_t label_width = 20;
-constexpr std::size_t line_width = 10;
-constexpr std::size_t bar_width = 24;
 /// A run that is shorter needs no bar.
 constexpr std::chrono::milliseconds quiet_start{500};
-constexpr std::chrono::milliseconds redraw_interval{50};
-/// A stage without a report for this long is drawn again, with the time that has passed.
-constexpr std::chrono::milliseconds longest_silence{1000};
+constexpr std::chrono::milliseconds redraw_interval{100};
 
-std::string padded(const std::string& label) {
-  return label + std::string(label.size() < label_width ? label_width - label.size() : 1, ' ');
+std::string padded(const std::string& label, std::size_t width = 20) {
+  return label + std::string(label.size() < width ? width - label.size() : 1, ' ');
 }
 
-void flushStandardOutput() {
-  errno = 0;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw Failure("cannot write to the standard output: " + systemMessage(errno != 0 ? errno : EIO),
-                  "direct the standard output to a place that takes it");
-  }
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
 
-Console::Console(Detail detail)
-    : detail_(detail), terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
+Console::Console(Detail detail) : detail_(detail) {
+  if (detail == Detail::Nothing || isatty(STDOUT_FILENO) != 1) {
+    return;
+  }
+  drawer_ = std::thread([this] {
+    std::unique_lock<std::mutex> lock(mutex_);
+    for (auto pause = quiet_start; !ending_.wait_for(lock, pause, [this] { return is_ending_; });
+         pause = redraw_interval) {
+      draw();
+    }
+  });
+}
 
 Console::~Console() {
   if (drawer_.joinable()) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      ended_ = true;
+      is_ending_ = true;
     }
     ending_.notify_all();
     drawer_.join();
@@ -62,17 +64,16 @@ void Console::print(const std::string& text) {
 
 void Console::summary(const Summary& summary) {
   const auto line = [this](const std::string& label, const std::string& value) {
-    print(label + std::string(line_width - label.size(), ' ') + oneLine(value) + "\n");
+    print(padded(label, 10) + oneLine(value) + "\n");
   };
   std::string files;
   for (const std::string& file : summary.written) {
     files += (files.empty() ? "" : ", ") + file;
   }
-  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   line("read", summary.read);
   line("verdict", summary.verdict);
   line("made", summary.made);
-  line("time", formatted(seconds, 3) + " s");
+  line("time", formatted(secondsSince(start_), 3) + " s");
   line("left out", summary.left_out);
   if (!summary.moved.empty()) {
     line("moved", summary.moved);
@@ -91,89 +92,75 @@ void Console::entry(const std::string& label, const std::string& value) {
 }
 
 void Console::begin(const std::string& stage) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stage_ = stage;
-    in_stage_ = true;
-    fraction_ = 0.0;
-    begin_ = Clock::now();
-    drawn_ = begin_ - 2 * redraw_interval;
-  }
-  if (detail_ != Detail::Nothing && terminal_ && !drawer_.joinable()) {
-    drawer_ = std::thread([this] { keepDrawing(); });
-  }
-  update(0.0);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stage_ = stage;
+  fraction_ = 0.0;
+  begin_ = Clock::now();
 }
 
 void Console::update(double fraction) {
-  if (detail_ == Detail::Nothing || !terminal_) {
-    return;
-  }
   const std::lock_guard<std::mutex> lock(mutex_);
   fraction_ = std::clamp(fraction, 0.0, 1.0);
-  const Clock::time_point now = Clock::now();
-  if (now - drawn_ >= redraw_interval && now - start_ >= quiet_start) {
-    draw();
-  }
+}
+
+FileProgress Console::updates(double from, double to) {
+  return [=](double fraction) { update(from + (to - from) * fraction); };
+}
+
+std::function<bool(const Progress&)> Console::progress(double to) {
+  return [=](const Progress& progress) {
+    update(to * progress.fraction);
+    return true;
+  };
 }
 
 void Console::draw() {
-  const Clock::time_point now = Clock::now();
-  drawn_ = now;
-  bar_drawn_ = true;
-  const std::string percent = std::to_string(static_cast<int>(fraction_ * 100.0));
-  const auto filled = static_cast<std::size_t>(fraction_ * static_cast<double>(bar_width));
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start_).count();
+  constexpr double bar_width = 24.0;
+  if (stage_.empty()) {
+    return;
+  }
+  is_bar_drawn_ = true;
+  std::string bar(static_cast<std::size_t>(fraction_ * bar_width), '#');
+  bar.resize(static_cast<std::size_t>(bar_width), '.');
+  std::array<char, 32> numbers;
+  std::snprintf(numbers.data(), numbers.size(), "] %3d %%  %.0f s",
+                static_cast<int>(fraction_ * 100.0), std::floor(secondsSince(start_)));
   // \033[K clears the rest of the line, left over from a longer one.
-  print("\r  " + padded(stage_) + "[" + std::string(filled, '#') +
-        std::string(bar_width - filled, '.') + "] " + std::string(3 - percent.size(), ' ') +
-        percent + " %  " + std::to_string(seconds) + " s\033[K");
+  print("\r  " + padded(stage_) + "[" + bar + numbers.data() + "\033[K");
   std::fflush(stdout);
 }
 
 void Console::clearBar() {
-  if (bar_drawn_) {
+  if (is_bar_drawn_) {
     print("\r\033[K");
-    bar_drawn_ = false;
+    is_bar_drawn_ = false;
   }
 }
 
-void Console::keepDrawing() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!ending_.wait_for(lock, longest_silence, [this] { return ended_; })) {
-    if (in_stage_ && Clock::now() - drawn_ >= longest_silence / 2) {
-      draw();
-    }
-  }
-}
-
-double Console::end(const std::string& detail) {
+StageTime Console::end(const std::string& detail) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const StageTime stage{std::exchange(stage_, ""), secondsSince(begin_)};
   std::array<char, 32> time;
-  std::snprintf(time.data(), time.size(), "%8.3f s", seconds);
+  std::snprintf(time.data(), time.size(), "%8.3f s", stage.seconds);
   clearBar();
-  entry(stage_, time.data() + (detail.empty() ? "" : "  " + detail));
-  in_stage_ = false;
+  entry(stage.name, time.data() + (detail.empty() ? "" : "  " + detail));
   std::fflush(stdout);
-  return seconds;
+  return stage;
 }
 
 void Console::flush() {
   if (detail_ != Detail::Nothing) {
-    flushStandardOutput();
+    printAll("");
   }
 }
 
 void printAll(const std::string& text) {
+  errno = 0;
   std::fwrite(text.data(), 1, text.size(), stdout);
-  flushStandardOutput();
-}
-
-std::string formatted(double value, int digits) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return text.data();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw Failure("cannot write to the standard output: " + systemMessage(errno != 0 ? errno : EIO),
+                  "direct the standard output to a place that takes it");
+  }
 }
 
 }  // namespace spherical_param::tools

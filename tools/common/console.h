@@ -1,7 +1,12 @@
 #pragma once
 
+#include "common/block_reader.h"
+#include "spherical_param/execution.h"
+#include "spherical_param/result.h"
+
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -27,7 +32,7 @@ struct Summary {
 };
 
 /// The standard output of a tool: pairs of label and value, and stages of work with their time. On
-/// a terminal a stage is a progress bar, which is drawn again every second even without a report.
+/// a terminal a stage is a progress bar, which a thread draws.
 class Console {
 public:
   explicit Console(Detail detail);
@@ -44,10 +49,13 @@ public:
 
   /// Begins a stage.
   void begin(const std::string& stage);
-  /// Draws the bar of the stage; fraction in [0, 1].
+  /// How much of the stage is done, in [0, 1].
   void update(double fraction);
-  /// Ends the stage. \return its time [s].
-  double end(const std::string& detail);
+  /// For functions that report their progress: their part of the stage.
+  FileProgress updates(double from = 0.0, double to = 1.0);
+  std::function<bool(const Progress&)> progress(double to = 1.0);
+  /// Ends the stage. \return its name and time
+  StageTime end(const std::string& detail = "");
 
   /// Makes sure that everything is printed. \throw Failure if the output cannot be written.
   void flush();
@@ -56,32 +64,23 @@ private:
   using Clock = std::chrono::steady_clock;
 
   void print(const std::string& text);
-  /// Draws the bar, with the mutex locked.
   void draw();
   void clearBar();
-  /// Draws the bar now and then, until the end.
-  void keepDrawing();
 
-  Detail detail_;
-  bool terminal_;
-  Clock::time_point start_;
+  const Detail detail_;
+  const Clock::time_point start_ = Clock::now();
 
   std::mutex mutex_;  ///< of all that follows
   std::condition_variable ending_;
-  bool ended_ = false;
-  bool in_stage_ = false;
-  bool bar_drawn_ = false;
-  std::string stage_;
+  bool is_ending_ = false;
+  bool is_bar_drawn_ = false;
+  std::string stage_;  ///< empty between stages
   double fraction_ = 0.0;
   Clock::time_point begin_;
-  Clock::time_point drawn_;
   std::thread drawer_;
 };
 
 /// Prints text on the standard output and makes sure that it got there. \throw Failure.
 void printAll(const std::string& text);
-
-/// A number with the given number of significant digits.
-std::string formatted(double value, int digits);
 
 }  // namespace spherical_param::tools

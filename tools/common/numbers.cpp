@@ -1,12 +1,10 @@
 #include "common/numbers.h"
 
-#include "common/errors.h"
 #include "common/text.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <sstream>
+#include <limits>
 
 namespace spherical_param::tools {
 namespace {
@@ -17,23 +15,6 @@ std::string_view withoutPlus(std::string_view text) {
     text.remove_prefix(1);
   }
   return text;
-}
-
-template <typename Number>
-std::optional<Number> toWhole(std::string_view text) {
-  text = withoutPlus(text);
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
-}
-
-[[noreturn]] void failNumber(const std::string& option, const std::string& text,
-                             const std::string& wanted) {
-  throw UsageError("option -" + option + ": " + inQuotes(text) + " is not " + wanted,
-                   "give -" + option + " " + wanted);
 }
 
 }  // namespace
@@ -88,41 +69,11 @@ std::optional<double> toValue(std::string_view text) {
 }
 
 std::optional<std::int64_t> toInteger(std::string_view text) {
-  return toWhole<std::int64_t>(text);
-}
-
-std::int64_t parseInteger(const std::string& option, const std::string& text,
-                          const IntegerRange& range) {
-  const std::optional<std::int64_t> value = toInteger(text);
-  if (!value || *value < range.lowest || *value > range.highest) {
-    failNumber(option, text,
-               "a whole number from " + std::to_string(range.lowest) + " to " +
-                   std::to_string(range.highest));
-  }
-  return *value;
-}
-
-double parseReal(const std::string& option, const std::string& text, const RealRange& range) {
-  const std::optional<double> value = toReal(text);
-  const bool valid = value && std::isfinite(*value) && *value <= range.highest &&
-                     (range.lowest_included ? *value >= range.lowest : *value > range.lowest);
-  if (!valid) {
-    std::ostringstream wanted;
-    wanted << "a number " << (range.lowest_included ? "from " : "above ") << range.lowest
-           << (range.lowest_included ? " to " : " and up to ") << range.highest;
-    failNumber(option, text, wanted.str());
-  }
-  return *value;
-}
-
-std::uint64_t parseUnsigned(const std::string& option, const std::string& text) {
-  const std::optional<std::uint64_t> value = toWhole<std::uint64_t>(text);
-  if (!value) {
-    failNumber(option, text,
-               "a whole number from 0 to " +
-                   std::to_string(std::numeric_limits<std::uint64_t>::max()));
-  }
-  return *value;
+  text = withoutPlus(text);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value)
+                                                                  : std::nullopt;
 }
 
 }  // namespace spherical_param::tools

@@ -1,10 +1,11 @@
 #include "common/product_input.h"
 
 #include "common/errors.h"
-#include "common/numbers.h"
 #include "common/text.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace spherical_param::tools {
@@ -22,14 +23,9 @@ void addToJson(const MapDistortion& distortion, Json& json) {
   json["stretch_efficiency"] = distortion.stretch_efficiency;
 }
 
-/// \param before of the embedding, if there is one.
-std::string listed(const DistortionStatistics& statistics, const DistortionStatistics* before) {
-  const auto three = [](const DistortionStatistics& values) {
-    return formatted(values.mean, 4) + ", " + formatted(values.p95, 4) + ", " +
-           formatted(values.max, 4);
-  };
-  return three(statistics) + " (mean, 95 %, max" +
-         (before != nullptr ? "; embedding: " + three(*before) : "") + ")";
+std::string listed(const DistortionStatistics& values) {
+  return formatted(values.mean, 4) + ", " + formatted(values.p95, 4) + ", " +
+         formatted(values.max, 4);
 }
 
 /// \param vertex_of of each vertex of the cut mesh.
@@ -49,35 +45,31 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud,
 
 }  // namespace
 
-ProductDefaults::ProductDefaults(HandlesOnSphere on_sphere, SphereMapOptions of_map)
+ProductSettings::ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map)
     : handles(on_sphere), map(std::move(of_map)) {
   if (handles == HandlesOnSphere::Refused) {
-    reconstruction.topology = TopologyMode::Sphere;
+    reconstruction.options.topology = TopologyMode::Sphere;
   }
 }
 
-std::vector<OptionInfo> productOptions(const ProductDefaults& defaults) {
-  std::vector<OptionInfo> options = reconstructionOptions(defaults.reconstruction);
-  options.push_back(
-      {"area-weight", "X",
-       "map: weight of areas, 0 (angles) to 1 (" + formatted(defaults.map.area_weight, 3) + ")"});
-  options.push_back({"map-sweeps", "N",
-                     "map: maximum number of sweeps a level, up to 1000 (" +
-                         std::to_string(defaults.map.sweeps) + ")"});
-  return options;
+OptionTable productOptions(ProductSettings& settings) {
+  SphereMapOptions& map = settings.map;
+  return joined(
+      {reconstructionOptions(settings.reconstruction),
+       {usedIf([&map] { return map.sweeps > 0; },
+               numberOption("area-weight", "map: weight of areas instead of angles",
+                            map.area_weight, 0, 1)),
+        numberOption("map-sweeps", "map: maximum number of sweeps a level", map.sweeps, 0, 1000)}});
 }
 
-ProductSettings parseProductOptions(const CommandLine& command_line,
-                                    const ProductDefaults& defaults) {
-  ProductSettings settings;
-  settings.map = defaults.map;
-  settings.handles = defaults.handles;
-  settings.reconstruction = parseReconstructionOptions(command_line, defaults.reconstruction);
+void parseProductOptions(const CommandLine& command_line, ProductSettings& settings) {
+  command_line.apply(productOptions(settings));
+  parseReconstructionOptions(command_line, settings.reconstruction);
   Options& options = settings.reconstruction.options;
   if (options.topology == TopologyMode::Scan && options.parts == PartsMode::AsTopology) {
     options.parts = PartsMode::Largest;
   }
-  if (defaults.handles == HandlesOnSphere::Refused && options.handles == HandleMode::AsTopology) {
+  if (settings.handles == HandlesOnSphere::Refused && options.handles == HandleMode::AsTopology) {
     options.handles = HandleMode::None;
   }
   if (options.parts == PartsMode::Each) {
@@ -85,35 +77,9 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
                      "give -parts largest, or write each part to its own file first");
   }
   settings.map.threads = options.threads;
-  if (command_line.has("area-weight")) {
-    settings.map.area_weight =
-        parseReal("area-weight", command_line.value("area-weight", ""), {0.0, 1.0, true});
+  if (settings.map.sweeps == 0) {
+    command_line.refuse({"area-weight"}, "-map-sweeps 0", "more sweeps");
   }
-  if (command_line.has("map-sweeps")) {
-    settings.map.sweeps = static_cast<int>(
-        parseInteger("map-sweeps", command_line.value("map-sweeps", ""), {0, 1000}));
-  }
-  if (settings.map.sweeps == 0 && command_line.has("area-weight")) {
-    throw UsageError("option -area-weight does nothing with -map-sweeps 0",
-                     "leave -area-weight out, or give -map-sweeps " +
-                         std::to_string(defaults.map.sweeps));
-  }
-  return settings;
-}
-
-void printProductOptions(const ProductSettings& settings, Console& console) {
-  printReconstructionOptions(settings.reconstruction, console);
-  if (settings.map.sweeps > 0) {
-    console.entry("area weight", formatted(settings.map.area_weight, 6));
-  }
-  console.entry("map sweeps", "up to " + std::to_string(settings.map.sweeps));
-}
-
-Json productOptionsToJson(const ProductSettings& settings) {
-  Json json = reconstructionOptionsToJson(settings.reconstruction);
-  json["area_weight"] = settings.map.sweeps == 0 ? Json(nullptr) : Json(settings.map.area_weight);
-  json["map_sweeps"] = settings.map.sweeps;
-  return json;
 }
 
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
@@ -125,17 +91,49 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   const Surface& surface = mapped.cloud.surface();
   console.begin("map");
   SphereMapOptions options = settings.map;
-  options.progress = [&console](const Progress& progress) {
-    console.update(progress.fraction);
-    return true;
-  };
+  options.progress = console.progress();
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
     mapped.mesh = cutHandles(vertexPositions(mapped.cloud, surface), surface.triangles);
     mapped.map =
         computeSphereMap(mapped.mesh.points, mapped.mesh.triangles, surface.sphere, options);
   });
   mapped.colors = vertexColors(mapped.cloud, mapped.mesh.vertex_of);
-  mapped.cloud.stages.push_back({"map", console.end("")});
+  mapped.cloud.stages.push_back(console.end());
+}
+
+const Names<SurfaceFit> fit_names = {{"linear", SurfaceFit::Linear},
+                                     {"smooth", SurfaceFit::Smooth}};
+
+SphereSurface surfaceOf(const MappedCloud& mapped, SurfaceFit fit, int threads) {
+  return {mapped.mesh.points,
+          mapped.mesh.triangles,
+          mapped.map.sphere,
+          {fit, threads, mapped.map.caps}};
+}
+
+Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLocation>& places,
+                          double start) {
+  Eigen::Matrix4Xd colors(4, mapped.colors.empty() ? 0 : places.size());
+  for (Eigen::Index i = 0; i < colors.cols(); ++i) {
+    const SphereLocation& place = places[static_cast<std::size_t>(i)];
+    colors.col(i).setConstant(start);
+    for (Eigen::Index corner = 0; corner < 3; ++corner) {
+      const Index vertex = mapped.mesh.triangles(corner, place.triangle);
+      const Color& color = mapped.colors[static_cast<std::size_t>(vertex)];
+      colors.col(i) +=
+          place.weights[corner] * Eigen::Vector4d(color[0], color[1], color[2], color[3]);
+    }
+  }
+  return colors;
+}
+
+Color truncated(const Eigen::Vector4d& color) {
+  Color bytes{};
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    const double value = color[static_cast<Eigen::Index>(channel)];
+    bytes[channel] = static_cast<std::uint8_t>(std::min(std::max(value, 0.0), 255.0));
+  }
+  return bytes;
 }
 
 std::vector<Finding> findingsOf(const MappedCloud& mapped) {
@@ -161,22 +159,24 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
 }
 
 void printMap(const MappedCloud& mapped, Console& console) {
-  const SphereMap& map = mapped.map;
+  const Surface& surface = mapped.cloud.surface();
+  const MapDistortion& now = mapped.map.distortion;
+  const MapDistortion& before = mapped.map.before;
+  const auto with_embedding = [&](const std::string& value, const char* mark) {
+    return surface.sphere.cols() > 0 ? mark + ("embedding: " + value) : "";
+  };
   console.entry("input points", std::to_string(mapped.cloud.data->points.size()));
-  console.entry("vertices", std::to_string(mapped.cloud.surface().input_of_vertex.size()));
-  console.entry("mesh",
-                std::to_string(mapped.mesh.triangles.cols()) + " triangles, " +
-                    counted(mapped.cloud.surface().self_intersections.size(), "self-intersection"));
-  const MapDistortion* before = mapped.cloud.surface().sphere.cols() > 0 ? &map.before : nullptr;
+  console.entry("vertices", std::to_string(surface.input_of_vertex.size()));
+  console.entry("mesh", std::to_string(mapped.mesh.triangles.cols()) + " triangles, " +
+                            counted(surface.self_intersections.size(), "self-intersection"));
+  const std::string flipped = with_embedding(std::to_string(before.flipped_triangles), " (");
   console.entry("flipped on sphere",
-                std::to_string(map.distortion.flipped_triangles) +
-                    (before != nullptr
-                         ? " (embedding: " + std::to_string(before->flipped_triangles) + ")"
-                         : ""));
-  console.entry("angle distortion",
-                listed(map.distortion.angle, before != nullptr ? &before->angle : nullptr));
-  console.entry("area distortion",
-                listed(map.distortion.area, before != nullptr ? &before->area : nullptr));
+                std::to_string(now.flipped_triangles) + (flipped.empty() ? "" : flipped + ")"));
+  for (const auto& [label, of] : {std::pair("angle distortion", &MapDistortion::angle),
+                                  std::pair("area distortion", &MapDistortion::area)}) {
+    console.entry(label, listed(now.*of) + " (mean, 95 %, max" +
+                             with_embedding(listed(before.*of), "; ") + ")");
+  }
 }
 
 }  // namespace spherical_param::tools

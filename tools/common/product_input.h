@@ -8,6 +8,7 @@
 #include "common/reconstruction_options.h"
 #include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
 
 #include <string>
 #include <vector>
@@ -19,32 +20,19 @@ enum class HandlesOnSphere { Cut, Refused };
 
 /// What the tools that use the map to the sphere have in common: how they come to it.
 struct ProductSettings {
-  ReconstructionSettings reconstruction;
-  SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
-  HandlesOnSphere handles = HandlesOnSphere::Refused;
-};
-
-/// The defaults of a tool that makes one surface.
-struct ProductDefaults {
-  explicit ProductDefaults(HandlesOnSphere on_sphere, SphereMapOptions of_map = {});
+  /// One sphere if handles are refused.
+  explicit ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map = {});
 
   HandlesOnSphere handles;
-  Options reconstruction;  ///< one sphere if handles are refused
-  SphereMapOptions map;
+  SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
+  ReconstructionSettings reconstruction;
 };
 
-/// The lines of the options of the reconstruction, then those of the map.
-std::vector<OptionInfo> productOptions(const ProductDefaults& defaults);
+/// The options of the reconstruction, then those of the map.
+OptionTable productOptions(ProductSettings& settings);
 
-/// Refuses options that would change nothing as well. \throw UsageError
-ProductSettings parseProductOptions(const CommandLine& command_line,
-                                    const ProductDefaults& defaults);
-
-/// Prints the settings.
-void printProductOptions(const ProductSettings& settings, Console& console);
-
-/// What is in force; what has no say with the chosen methods is null.
-Json productOptionsToJson(const ProductSettings& settings);
+/// Sets those that were given. Refuses options that would change nothing as well. \throw UsageError
+void parseProductOptions(const CommandLine& command_line, ProductSettings& settings);
 
 /// A cloud, its mesh, and the map of that to the sphere.
 struct MappedCloud {
@@ -58,6 +46,17 @@ struct MappedCloud {
 /// \throw UsageError, Failure
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped);
+
+/// The surface of the mesh with its map.
+SphereSurface surfaceOf(const MappedCloud& mapped, SurfaceFit fit, int threads);
+extern const Names<SurfaceFit> fit_names;
+
+/// Colours at places of the mesh, between those of the corners: 4 x n, in 0 ... 255, plus `start`;
+/// empty without colours.
+Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLocation>& places,
+                          double start);
+/// A colour without the fractions of its channels.
+Color truncated(const Eigen::Vector4d& color);
 
 /// What the library found, with options that tools of one surface take.
 std::vector<Finding> findingsOf(const MappedCloud& mapped);

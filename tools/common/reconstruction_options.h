@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/command_line.h"
-#include "common/console.h"
 #include "common/json_report.h"
 #include "spherical_param/options.h"
 
@@ -17,20 +16,13 @@ struct ReconstructionSettings {
   std::vector<std::string> columns;  ///< of text files; empty: those that they say themselves
 };
 
-/// The lines of the options of the reconstruction: those of the library's table, and a few more.
-std::vector<OptionInfo> reconstructionOptions(const Options& defaults = {});
+/// The options of the library's table, -columns and -strict.
+OptionTable reconstructionOptions(ReconstructionSettings& settings);
 
-/// Refuses options that would have no effect as well. \throw UsageError
-ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line,
-                                                  const Options& defaults = {});
-
-/// Prints the values in force.
-void printReconstructionOptions(const ReconstructionSettings& settings, Console& console);
+/// Sets those that were given. Refuses options that would have no effect as well. \throw UsageError
+void parseReconstructionOptions(const CommandLine& command_line, ReconstructionSettings& settings);
 
 /// The values of the options; null if unset or without effect.
-Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
-
-/// The value in force of an option of the library's table, as text.
-std::string optionText(const Options& options, const std::string& name);
+Json reconstructionOptionsToJson(ReconstructionSettings settings);
 
 }  // namespace spherical_param::tools

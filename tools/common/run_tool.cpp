@@ -25,55 +25,36 @@
 namespace spherical_param::tools {
 namespace {
 
-/// Ends the tool as the signal would have, so that the caller sees what happened.
-[[noreturn]] void endBySignal(int signal_number) {
-  removeTemporaryFiles([signal_number] {
-    std::signal(signal_number, SIG_DFL);
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, signal_number);
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-    std::raise(signal_number);
-  });
-  std::abort();
-}
-
 /// Leaves the signals that end a program to a thread of their own: a handler could interrupt the
 /// making of a file, in one thread or another, and may do next to nothing. The signals must be
 /// blocked before there are other threads.
 void handleSignals() {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     // One that is ignored, as nohup does, stays ignored.
-    if (sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
-      sigaddset(&signals, signal_number);
+    if (std::signal(number, SIG_DFL) == SIG_IGN) {
+      std::signal(number, SIG_IGN);
+    } else {
+      sigaddset(&signals, number);
     }
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals] {
-    int signal_number = 0;
-    if (sigwait(&signals, &signal_number) == 0) {
-      endBySignal(signal_number);
-    }
+    int number = 0;
+    sigwait(&signals, &number);
+    removeTemporaryFiles([&] {
+      // Ends the tool as the signal would have, so that the caller sees what happened.
+      pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+      std::raise(number);
+    });
   }).detach();
   // A closed pipe or a size limit is an error of the write like any other.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-constexpr const char* no_memory = "not enough memory";
-constexpr const char* fewer_points = "use fewer points or a smaller -k";
-
-/// Prints a failure; needs no memory.
-int print(const char* tool, const char* cause, const char* remedy) noexcept {
-  std::fflush(stdout);
-  std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool, cause, remedy);
-  return static_cast<int>(ExitCode::Failed);
-}
-
-int report(const std::string& tool, const ToolError& error) {
+int fail(const std::string& tool, const ToolError& error) {
   std::fflush(stdout);
   std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool.c_str(), oneLine(error.what()).c_str(),
                oneLine(error.remedy()).c_str());
@@ -113,35 +94,58 @@ int runTool(const std::string& tool, int argc, char** argv,
       body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
       return static_cast<int>(ExitCode::Done);
     } catch (const ToolError& error) {
-      return report(tool, error);
+      return fail(tool, error);
     } catch (const std::bad_alloc&) {
-      return print(tool.c_str(), no_memory, fewer_points);
+      throw;
     } catch (const std::filesystem::filesystem_error& error) {
-      return report(tool, Failure(error.what(), "check that the directories of all paths, and the "
-                                                "one you are in, exist"));
+      return fail(tool, Failure(error.what(), "check that the directories of all paths, and the "
+                                              "one you are in, exist"));
     } catch (const std::system_error& error) {
-      return report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
-                                  "allow more memory or processes"));
+      return fail(tool, Failure("the system refuses a resource: " + std::string(error.what()),
+                                "allow more memory or processes"));
     } catch (const std::exception& error) {
-      return report(tool, Failure(error.what(), kReportIt));
+      return fail(tool, Failure(error.what(), kReportIt));
     }
   } catch (const std::bad_alloc&) {
-    // Not even enough for the message.
-    return print(tool.c_str(), no_memory, fewer_points);
+    // There may not be enough for a message either.
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s: not enough memory\n  remedy: use fewer points or a smaller -k\n",
+                 tool.c_str());
+    return static_cast<int>(ExitCode::Failed);
   }
 }
 
-bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
-                         const std::function<std::string(bool with_experts)>& help) {
-  if (command_line.wantsHelp()) {
-    printAll(help(command_line.wantsExpertHelp()));
+bool answerHelpOrVersion(const CommandLine& command_line, const ToolText& text,
+                         const OptionTable& options) {
+  const std::vector<std::string>& others = command_line.others();
+  if (command_line.has("h") || command_line.has("help")) {
+    std::string examples;
+    for (const auto& [remark, words] : text.examples) {
+      examples += "  " + remark + "\n    " + text.name + " " + words + "\n";
+    }
+    printAll("Usage: " + text.name + " " + text.files + " [options]\n\n" + text.about +
+             "\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
+             describeOptions(options, others.size() == 1 && others.front() == "expert") +
+             "\nExamples:\n" + examples + "\nExit code: " + text.exit_codes + "\n");
     return true;
   }
-  if (command_line.wantsVersion()) {
-    printAll(tool + " " + SPHERICAL_PARAM_VERSION + "\n");
+  if (command_line.has("version")) {
+    printAll(text.name + " " + SPHERICAL_PARAM_VERSION + "\n");
     return true;
   }
   return false;
+}
+
+std::vector<std::string> filesOf(const CommandLine& command_line, const ToolText& text) {
+  const std::vector<std::string_view> names = split(text.files, " ");
+  const std::vector<std::string>& files = command_line.others();
+  if (files.size() != names.size()) {
+    throw UsageError(files.size() > names.size()
+                         ? "one file too many: " + inQuotes(files[names.size()])
+                         : "the " + std::string(names[files.size()]) + " file is missing",
+                     "run '" + text.name + " " + text.files + " [options]', -h shows the options");
+  }
+  return files;
 }
 
 }  // namespace spherical_param::tools

@@ -1,23 +1,18 @@
 #include "common/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <system_error>
 
 namespace spherical_param::tools {
 namespace {
 
-bool isControl(char character) {
-  const auto code = static_cast<unsigned char>(character);
-  return code < 0x20 || code == 0x7f;
-}
-
 std::string withoutControls(std::string_view text, char replacement) {
   std::string result(text);
-  for (char& character : result) {
-    if (isControl(character)) {
-      character = replacement;
-    }
-  }
+  std::replace_if(
+      result.begin(), result.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, replacement);
   return result;
 }
 
@@ -35,10 +30,8 @@ std::string oneLine(std::string_view text) {
 
 std::string lowerCase(std::string_view text) {
   std::string result(text);
-  for (char& character : result) {
-    if (character >= 'A' && character <= 'Z') {
-      character = static_cast<char>(character - 'A' + 'a');
-    }
+  for (char& c : result) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   return result;
 }
@@ -70,10 +63,6 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
   return parts;
 }
 
-std::string yesOrNo(bool value) {
-  return value ? "yes" : "no";
-}
-
 std::string grouped(std::size_t number) {
   std::string text = std::to_string(number);
   for (std::size_t end = text.size(); end > 3; end -= 3) {
@@ -82,12 +71,14 @@ std::string grouped(std::size_t number) {
   return text;
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return counted(count, noun, noun + "s");
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return grouped(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
 }
 
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return grouped(count) + " " + (count == 1 ? one : many);
+std::string formatted(double value, int digits) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
 }
 
 std::string systemMessage(int error_number) {

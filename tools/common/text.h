@@ -30,14 +30,14 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 void split(std::string_view text, std::string_view separators,
            std::vector<std::string_view>& parts);
 
-std::string yesOrNo(bool value);
-
 /// A number as people write it, e.g. "49,996".
 std::string grouped(std::size_t number);
 
 /// A number with its noun, e.g. "1 point", "2,000 points".
-std::string counted(std::size_t count, const std::string& noun);
-std::string counted(std::size_t count, const std::string& one, const std::string& many);
+std::string counted(std::size_t count, const std::string& one, const std::string& many = "");
+
+/// A number with the given number of significant digits.
+std::string formatted(double value, int digits);
 
 /// Text of an errno value.
 std::string systemMessage(int error_number);

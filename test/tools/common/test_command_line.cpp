@@ -2,6 +2,7 @@
 
 #include "common/errors.h"
 #include "common/numbers.h"
+#include "formats/formats.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +14,9 @@
 namespace spherical_param::tools {
 namespace {
 
-const std::vector<OptionInfo> kOptions = {{"k", "N", "neighbours", false},
-                                          {"kind", "NAME", "of graph", true},
-                                          {"quiet", "", "print nothing", false}};
+const OptionTable kOptions = {{"k", "N", "neighbours", false},
+                              {"kind", "NAME", "of graph", true},
+                              {"quiet", "", "print nothing", false}};
 
 TEST(CommandLine, TakesOptionsInEveryNotationAndOrder) {
   const std::vector<std::vector<std::string>> notations = {
@@ -30,15 +31,13 @@ TEST(CommandLine, TakesOptionsInEveryNotationAndOrder) {
     EXPECT_EQ(line.value("kind", "none"), "x");
     EXPECT_TRUE(line.has("quiet"));
     EXPECT_EQ(line.others(), (std::vector<std::string>{"in", "out"}));
-    EXPECT_FALSE(line.wantsHelp() || line.wantsVersion());
   }
   EXPECT_EQ(CommandLine({"in"}, kOptions).value("k", "none"), "none");
   EXPECT_EQ(CommandLine({"-k", "-7"}, kOptions).value("k", ""), "-7");
   EXPECT_EQ(CommandLine({"-", "--", "-k"}, kOptions).others(),
             (std::vector<std::string>{"-", "-k"}));
-  for (const char* help : {"-h", "--h", "-help", "--help"})
-    EXPECT_TRUE(CommandLine({help}, kOptions).wantsHelp());
-  EXPECT_TRUE(CommandLine({"--version"}, kOptions).wantsVersion());
+  for (const char* known : {"h", "help", "version"})
+    EXPECT_TRUE(CommandLine({std::string("--") + known}, kOptions).has(known));
 }
 
 TEST(CommandLine, UnknownOptionsAreAnsweredWithTheNearest) {
@@ -56,8 +55,6 @@ TEST(CommandLine, UnknownOptionsAreAnsweredWithTheNearest) {
 }
 
 TEST(CommandLine, HelpOfAllOptionsIsThatForExperts) {
-  EXPECT_TRUE(CommandLine({"-h", "expert"}, kOptions).wantsExpertHelp());
-  EXPECT_FALSE(CommandLine({"-h"}, kOptions).wantsExpertHelp());
   const std::string brief = describeOptions(kOptions, false);
   EXPECT_EQ(brief.find("-kind"), std::string::npos);
   EXPECT_NE(brief.find("-h expert"), std::string::npos);
@@ -85,19 +82,22 @@ TEST(Numbers, AreTheWholeTextAndNothingElse) {
   EXPECT_EQ(toInteger("99999999999999999999"), std::nullopt);
 }
 
-TEST(Numbers, OfOptionsAreInTheirRange) {
-  for (const char* text : {"3", "9"})
-    EXPECT_EQ(std::to_string(parseInteger("k", text, {3, 9})), text);
-  for (const char* text : {"2", "10", "x"})
-    EXPECT_THROW(parseInteger("k", text, {3, 9}), UsageError) << text;
-  EXPECT_EQ(parseReal("x", "0", {0.0, 1.0, true}), 0.0);
-  EXPECT_THROW(parseReal("x", "0", {0.0, 1.0, false}), UsageError);
-  EXPECT_EQ(parseReal("x", "1", {0.0, 1.0, false}), 1.0);
+TEST(ToolOptions, TakeWhatIsInTheirRange) {
+  int integer = 5;
+  double real = 0.5;
+  Encoding encoding = Encoding::Binary;
+  const OptionTable options = {
+      numberOption("k", "", integer, 3, 9), numberOption("x", "", real, 0, 1),
+      choiceOption("kind", "", encoding,
+                   Names<Encoding>{{"binary", Encoding::Binary}, {"ascii", Encoding::Ascii}})};
+  EXPECT_EQ(optionsToJson(options).dump(), R"({"k":5,"x":0.5,"kind":"binary"})");
+  CommandLine({"-k", "9", "-x=0", "-kind", "ascii"}, options).apply(options);
+  EXPECT_EQ(optionsToJson(options).dump(), R"({"k":9,"x":0.0,"kind":"ascii"})");
+  for (const char* text : {"2", "10", "x", "4.5", ""})
+    EXPECT_THROW(options[0].take(text), UsageError) << text;
   for (const char* text : {"-1e-9", "1.001", "nan", "inf", "1e999", ""})
-    EXPECT_THROW(parseReal("x", text, {0.0, 1.0, true}), UsageError) << text;
-  EXPECT_EQ(parseUnsigned("seed", "18446744073709551615"), 18446744073709551615U);
-  for (const char* text : {"-1", "18446744073709551616", "1.5"})
-    EXPECT_THROW(parseUnsigned("seed", text), UsageError) << text;
+    EXPECT_THROW(options[1].take(text), UsageError) << text;
+  EXPECT_THROW(options[2].take("text"), UsageError);
 }
 
 }  // namespace

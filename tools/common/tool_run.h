@@ -1,0 +1,87 @@
+#pragma once
+
+#include "common/command_line.h"
+#include "common/console.h"
+#include "common/mesh_writer.h"
+#include "common/output_file.h"
+#include "spherical_param/result.h"
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherical_param::tools {
+
+/// Options on the files that a tool makes, besides their names.
+struct OutputSettings {
+  std::string json;             ///< file of the report; empty: not wanted; "-": the standard output
+  std::optional<Point> offset;  ///< of the coordinates that are written; unset: as the format needs
+  bool ascii = false;
+  bool quiet = false;
+  bool verbose = false;
+
+  Encoding encoding() const { return ascii ? Encoding::Ascii : Encoding::Binary; }
+  /// What is subtracted from the coordinates of a file.
+  Point offsetOf(FileFormat format, const PointData& data) const {
+    return offset ? *offset : offsetFor(data, format, encoding());
+  }
+};
+
+OptionTable outputOptions(OutputSettings& settings);
+
+/// The names of the files that a tool makes, with that of the report: those that are not empty.
+std::vector<std::string> outputsOf(const OutputSettings& settings,
+                                   const std::vector<std::string>& names);
+
+/// Looks for what would fail or do harm only after the work: an output that is an input or another
+/// output, or that cannot be written. \throw UsageError, Failure.
+void checkOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+/// What all tools do around their work.
+class ToolRun {
+public:
+  /// Prints the files and the options in force. \throw UsageError
+  ///
+  /// \param settings must outlive it. \param strict faults are a failure.
+  ToolRun(const OutputSettings& settings, bool strict, const std::string& tool,
+          const std::vector<std::pair<std::string, std::string>>& files,
+          const OptionTable& options);
+
+  Console console;
+
+  /// A file that gets its name together with the others.
+  OutputFile& open(const std::string& path) { return files_.emplace_back(path); }
+  /// Gives all files their names, once everything is stored and printed.
+  ///
+  /// \param make_report   called if a report is wanted.
+  /// \param print_verdict prints the last lines on the console. \throw Failure
+  void publish(const std::function<Json()>& make_report,
+               const std::function<void()>& print_verdict);
+
+  /// Adds findings of an input; `of` names it where there are several.
+  void add(const std::string& of, const std::vector<Finding>& findings);
+  /// Adds a failure that is no finding of the library, and counts as a fault.
+  void addFailure(const std::string& failure);
+  /// Prints the findings. Ends the tool with exit code 3 if a mesh is not usable, and with -strict
+  /// with 1 if there is a fault.
+  ///
+  /// \param page_option an option that shows where faults are, if it was not given. \throw
+  /// ToolError
+  void conclude(bool is_usable, const std::string& page_option = "");
+
+private:
+  struct Entry {
+    std::string of;  ///< the inputs that it is true of; empty: the only one
+    Finding finding;
+    bool is_failure = false;
+  };
+
+  const OutputSettings& settings_;
+  bool strict_;
+  std::deque<OutputFile> files_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace spherical_param::tools
