@@ -8,7 +8,6 @@
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "common/tool_run.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
@@ -26,19 +25,10 @@
 
 namespace {
 
+using namespace spherical_param;
 using namespace spherical_param::tools;
-using spherical_param::MorphConnectivity;
-using spherical_param::MorphResult;
-using spherical_param::Positions;
-using spherical_param::SphereSurface;
-using spherical_param::SurfaceFit;
 
-enum class Alignment { None, Rotation };
-
-const Names<Alignment> alignment_names = {
-    {"none", Alignment::None},
-    {"rotation", Alignment::Rotation},
-};
+const Names<bool> alignment_names = {{"none", false}, {"rotation", true}};
 const Names<MorphConnectivity> connectivity_names = {
     {"all", MorphConnectivity::AllVertices},
     {"resampled", MorphConnectivity::Resampled},
@@ -63,16 +53,14 @@ struct Settings {
   std::vector<std::string> files;  ///< of the frames
   FileFormat format = nullptr;
   std::string pairs;  ///< empty: none
-  Alignment alignment = Alignment::Rotation;
-  MorphConnectivity connectivity = MorphConnectivity::AllVertices;
-  std::size_t samples = spherical_param::MorphOptions().samples;
+  MorphOptions morph;
   SurfaceFit fit = SurfaceFit::Linear;
   bool match = false;
   bool check = false;
   ProductSettings product{HandlesOnSphere::Refused};
   OutputSettings report;
 
-  bool isResampled() const { return connectivity == MorphConnectivity::Resampled; }
+  bool isResampled() const { return morph.connectivity == MorphConnectivity::Resampled; }
   int threads() const { return product.reconstruction.options.threads; }
 };
 
@@ -82,12 +70,12 @@ OptionTable optionsOf(Settings& settings) {
         fileOption("pairs", "points that become one: two numbers from 0, or six coordinates a line",
                    settings.pairs),
         choiceOption("align", "of the spheres: none, or the best rotation of all",
-                     settings.alignment, alignment_names),
+                     settings.morph.align, alignment_names),
         choiceOption("connectivity", "the vertices of both meshes, or those of a geodesic sphere",
-                     settings.connectivity, connectivity_names),
+                     settings.morph.connectivity, connectivity_names),
         usedIf([&] { return settings.isResampled(); },
                numberOption("samples", "approximate number of vertices of resampled",
-                            settings.samples, 12, 1 << 24)),
+                            settings.morph.samples, 12, 1 << 24)),
         choiceOption("fit", "between vertices; resampled: smooth, unless it is given", settings.fit,
                      fit_names),
         flagOption("match", "move and scale the second object to the place and area of the first",
@@ -164,11 +152,11 @@ struct Morph {
   MorphResult result;
   std::vector<FilePair> pairs;
   std::vector<std::string> reasons;  ///< why pairs could not be honoured; empty: they are
-  spherical_param::MeshTopology topology;
+  MeshTopology topology;
   std::vector<std::size_t> self_intersections;  ///< of each frame; empty: not counted
   /// Of both shapes, 4 x w, in 0 ... 255; empty unless both have colours.
   std::array<Eigen::Matrix4Xd, 2> colors;
-  std::vector<spherical_param::StageTime> stages;
+  std::vector<StageTime> stages;
   Point offset{};  ///< of the coordinates that are written
 
   bool hasColors() const { return colors[0].cols() > 0 && colors[1].cols() > 0; }
@@ -182,7 +170,7 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
   std::array<double, 2> areas{};
   for (std::size_t side = 0; side < 2; ++side) {
     const Positions& points = clouds[side].mesh.points;
-    const spherical_param::Triangles& triangles = clouds[side].mesh.triangles;
+    const Triangles& triangles = clouds[side].mesh.triangles;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points.col(triangles(0, 0));
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
@@ -201,7 +189,7 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
 }
 
 /// Hands the pairs over to the library that are vertices. \return their places in the file
-std::vector<std::size_t> addPairs(Morph& morph, spherical_param::MorphOptions& options) {
+std::vector<std::size_t> addPairs(Morph& morph, MorphOptions& options) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
     const FilePair& pair = morph.pairs[i];
@@ -223,18 +211,14 @@ std::vector<std::size_t> addPairs(Morph& morph, spherical_param::MorphOptions& o
 
 void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
                Console& console) {
-  spherical_param::MorphOptions options;
-  options.align = settings.alignment == Alignment::Rotation;
-  options.connectivity = settings.connectivity;
-  options.samples = settings.samples;
+  MorphOptions options = settings.morph;
   options.threads = settings.threads();
   options.progress = console.progress();
   const std::vector<std::size_t> places = addPairs(morph, options);
   console.begin("morph");
-  morph.result = spherical_param::morphSurfaces(
-      surfaceOf(clouds[0], settings.fit, settings.threads()),
-      surfaceOf(clouds[1], settings.fit, settings.threads()), options);
-  for (const spherical_param::ImpossiblePair& pair : morph.result.impossible) {
+  morph.result = morphSurfaces(surfaceOf(clouds[0], settings.fit, settings.threads()),
+                               surfaceOf(clouds[1], settings.fit, settings.threads()), options);
+  for (const ImpossiblePair& pair : morph.result.impossible) {
     morph.reasons[places[pair.pair]] = pair.reason;
   }
   morph.colors = {colorsAt(clouds[0], morph.result.first_places, 0.0),
@@ -242,8 +226,7 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
   if (settings.match) {
     matchSecond(clouds, morph.result);
   }
-  morph.topology = spherical_param::checkTopology(morph.result.triangles, morph.vertexCount(),
-                                                  settings.threads());
+  morph.topology = checkTopology(morph.result.triangles, morph.vertexCount(), settings.threads());
   morph.stages.push_back(console.end(std::to_string(morph.vertexCount()) + " vertices"));
 }
 
@@ -252,19 +235,18 @@ double timeOf(const Settings& settings, std::size_t frame) {
 }
 
 Positions positionsOf(const Settings& settings, const Morph& morph, std::size_t frame) {
-  return spherical_param::inBetween(morph.result, timeOf(settings, frame));
+  return inBetween(morph.result, timeOf(settings, frame));
 }
 
 void checkFrames(const Settings& settings, Morph& morph, Console& console) {
   console.begin("verify");
   std::size_t sum = 0;
   for (std::size_t frame = 0; frame < settings.frames; ++frame) {
-    spherical_param::Execution execution;
+    Execution execution;
     execution.threads = settings.threads();
     const Positions positions = asWritten(positionsOf(settings, morph, frame));
     morph.self_intersections.push_back(
-        spherical_param::findSelfIntersections(positions, morph.result.triangles, execution)
-            .size());
+        findSelfIntersections(positions, morph.result.triangles, execution).size());
     sum += morph.self_intersections.back();
     console.update(timeOf(settings, frame));
   }
@@ -344,19 +326,8 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
   return json;
 }
 
-void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
-                  const Morph& morph, Console& console) {
-  for (const MappedCloud& mapped : clouds) {
-    printMap(mapped, console);
-  }
-  console.entry("alignment error", formatted(morph.result.alignment_error, 4));
-  console.entry("morph", std::to_string(morph.vertexCount()) + " vertices, " +
-                             std::to_string(morph.result.triangles.cols()) + " triangles");
-  console.entry("closed manifold", morph.topology.isSphere() ? "yes" : "no");
-  if (!morph.pairs.empty()) {
-    console.entry("pairs", std::to_string(morph.honoured()) + " of " +
-                               std::to_string(morph.pairs.size()) + " honoured");
-  }
+Summary summaryOf(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
+                  const Morph& morph) {
   Summary both;
   for (std::size_t side = 0; side < 2; ++side) {
     const std::string& input = settings.inputs[side];
@@ -370,23 +341,17 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
   both.written =
       outputsOf(settings.report, {settings.files.front() + " to " + settings.files.back()});
   both.written.front() += notWritten(morph.hasColors(), settings.format, morph.offset);
-  console.summary(both);
+  return both;
 }
 
-void run(const std::vector<std::string>& words) {
-  Settings settings;
-  const OptionTable options = optionsOf(settings);
-  const CommandLine command_line(words, options);
-  if (answerHelpOrVersion(command_line, toolText(), options)) {
-    return;
-  }
+void run(const CommandLine& command_line, Settings& settings) {
   parse(command_line, settings);
   checkFiles(settings);
   ToolRun run(settings.report, settings.product.reconstruction.strict, toolText().name,
               {{"first", settings.inputs[0]},
                {"second", settings.inputs[1]},
                {"output", settings.files.front() + " ... " + settings.files.back()}},
-              options);
+              optionsOf(settings));
   std::array<MappedCloud, 2> clouds;
   Morph morph;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -402,8 +367,9 @@ void run(const std::vector<std::string>& words) {
     }
   });
   store(settings, clouds, morph, run);
-  run.publish([&] { return report(settings, clouds, morph); },
-              [&] { printVerdict(settings, clouds, morph, run.console); });
+  const Json json = report(settings, clouds, morph);
+  printFigures(json, run.console);
+  run.publish([&] { return json; }, summaryOf(settings, clouds, morph));
   for (std::size_t side = 0; side < 2; ++side) {
     run.add(settings.inputs[side], findingsOf(clouds[side]));
   }
@@ -419,5 +385,7 @@ void run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(toolText().name, argc, argv, run);
+  Settings settings;
+  return runTool(toolText(), argc, argv, optionsOf(settings),
+                 [&](const CommandLine& command_line) { run(command_line, settings); });
 }

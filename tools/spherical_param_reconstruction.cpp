@@ -8,7 +8,6 @@
 #include "common/report_page.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "common/tool_run.h"
 #include "spherical_param/version.h"
 
 #include <algorithm>
@@ -20,9 +19,8 @@
 
 namespace {
 
+using namespace spherical_param;
 using namespace spherical_param::tools;
-using spherical_param::PartsMode;
-using spherical_param::Surface;
 
 ToolText toolText() {
   return {"pcl_spherical_param_reconstruction",
@@ -191,7 +189,7 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
 
 /// How far consolidation moved points; empty without.
 std::string movedBy(const Settings& settings, const std::vector<Surface>& surfaces) {
-  if (settings.reconstruction.options.consolidation == spherical_param::ConsolidationMode::None) {
+  if (settings.reconstruction.options.consolidation == ConsolidationMode::None) {
     return {};
   }
   double points = 0.0;
@@ -200,7 +198,7 @@ std::string movedBy(const Settings& settings, const std::vector<Surface>& surfac
   double most = 0.0;
   for (const Surface& surface : surfaces) {
     const auto count = static_cast<double>(surface.inputs.size());
-    const spherical_param::ConsolidationReport& moved = surface.consolidation;
+    const ConsolidationReport& moved = surface.consolidation;
     points += count;
     noise += count * moved.noise;
     mean += count * moved.mean_displacement;
@@ -210,8 +208,8 @@ std::string movedBy(const Settings& settings, const std::vector<Surface>& surfac
          "; the noise is " + formatted(noise / points, 3);
 }
 
-/// Prints what was made of each surface, then the six lines of a run.
-void printSummary(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
+/// Prints what was made of each surface.
+Summary summaryOf(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   std::size_t vertices = 0;
   Eigen::Index triangles = 0;
@@ -227,7 +225,7 @@ void printSummary(const Settings& settings, const CloudReconstruction& cloud, Co
   summary.made = meshSize(vertices, triangles);
   summary.written = writtenFiles(settings, cloud);
   summary.moved = movedBy(settings, surfaces);
-  console.summary(summary);
+  return summary;
 }
 
 void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction& cloud,
@@ -284,17 +282,11 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& r
   }
 }
 
-void run(const std::vector<std::string>& words) {
-  Settings settings;
-  const OptionTable options = optionsOf(settings);
-  const CommandLine command_line(words, options);
-  if (answerHelpOrVersion(command_line, toolText(), options)) {
-    return;
-  }
+void run(const CommandLine& command_line, Settings& settings) {
   parse(command_line, settings);
   checkOutputs({settings.input}, outputsOf(settingsOf(settings, 0)));
   ToolRun run(settings.report, settings.reconstruction.strict, toolText().name,
-              {{"input", settings.input}, {"output", settings.output}}, options);
+              {{"input", settings.input}, {"output", settings.output}}, optionsOf(settings));
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, run.console, cloud);
   cloud.offset = settings.report.offsetOf(settings.output_format, *cloud.data);
@@ -308,7 +300,7 @@ void run(const std::vector<std::string>& words) {
                              settings.reconstruction.options.parts == PartsMode::Each;
         return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
       },
-      [&] { printSummary(settings, cloud, run.console); });
+      summaryOf(settings, cloud, run.console));
   for (const std::string& failure : cloud.result.failures) {
     run.addFailure(failure);
   }
@@ -319,5 +311,7 @@ void run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(toolText().name, argc, argv, run);
+  Settings settings;
+  return runTool(toolText(), argc, argv, optionsOf(settings),
+                 [&](const CommandLine& command_line) { run(command_line, settings); });
 }

@@ -9,7 +9,6 @@
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "common/tool_run.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/mesh_measures.h"
@@ -27,16 +26,8 @@
 
 namespace {
 
+using namespace spherical_param;
 using namespace spherical_param::tools;
-using spherical_param::GeometryImage;
-using spherical_param::GridSphere;
-using spherical_param::Index;
-using spherical_param::Positions;
-using spherical_param::ResampledMesh;
-using spherical_param::SphereGrid;
-using spherical_param::SphereSurface;
-using spherical_param::SphericalHarmonics;
-using spherical_param::SurfaceFit;
 
 /// Where the points are.
 enum class Sampling { Icosahedral, Octahedral, Even };
@@ -83,7 +74,7 @@ struct Settings {
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
-  ProductSettings product{HandlesOnSphere::Refused, spherical_param::mapOptionsForResampling()};
+  ProductSettings product{HandlesOnSphere::Refused, mapOptionsForResampling()};
   OutputSettings report;
 
   bool makesCloud() const { return !reads_image && sampling == Sampling::Even; }
@@ -122,7 +113,7 @@ OptionTable ownOptions(Settings& settings) {
 
 /// All options; of a geometry image as input those that have a say.
 OptionTable optionsOf(Settings& settings) {
-  spherical_param::tools::ReconstructionSettings& reconstruction = settings.product.reconstruction;
+  ReconstructionSettings& reconstruction = settings.product.reconstruction;
   return joined(
       {ownOptions(settings),
        !settings.reads_image
@@ -210,13 +201,13 @@ struct Output {
   GeometryImage image;        ///< if one is read or written
   int frequency = 0;          ///< of the grid
   std::optional<SphericalHarmonics> harmonics;
-  std::optional<spherical_param::UntanglingReport> untangling;
+  std::optional<UntanglingReport> untangling;
   std::size_t flipped_edges = 0;  ///< after it
-  spherical_param::MeshTopology topology;
-  spherical_param::MeshMeasures measures;
+  MeshTopology topology;
+  MeshMeasures measures;
   std::vector<std::array<Index, 2>> self_intersections;
   std::optional<DistanceStatistics> distance;  ///< of the vertices of the cloud's mesh
-  std::vector<spherical_param::StageTime> stages;
+  std::vector<StageTime> stages;
   Point offset{};  ///< of the coordinates that are written
 
   std::string pixels() const {
@@ -228,7 +219,7 @@ struct Output {
 
 /// Rounded to the nearest.
 std::vector<Color> interpolatedColors(const MappedCloud& mapped,
-                                      const std::vector<spherical_param::SphereLocation>& places) {
+                                      const std::vector<SphereLocation>& places) {
   const Eigen::Matrix4Xd raised = colorsAt(mapped, places, 0.5);
   std::vector<Color> colors(static_cast<std::size_t>(raised.cols()));
   std::transform(raised.colwise().begin(), raised.colwise().end(), colors.begin(), truncated);
@@ -238,11 +229,11 @@ std::vector<Color> interpolatedColors(const MappedCloud& mapped,
 GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurface& surface) {
   const SphereGrid kind =
       settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
-  int frequency = spherical_param::gridFrequency(kind, points, surface);
+  int frequency = gridFrequency(kind, points, surface);
   if (settings.writes_image) {
     frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
   }
-  return spherical_param::makeGridSphere(kind, frequency);
+  return makeGridSphere(kind, frequency);
 }
 
 /// Samples the surface as the user wants it.
@@ -251,18 +242,18 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
   const std::size_t wanted =
       settings.points ? *settings.points : static_cast<std::size_t>(mapped.mesh.points.cols());
   if (settings.makesCloud()) {
-    spherical_param::SurfacePoints points = spherical_param::sampleEvenly(
-        surface, wanted, settings.product.reconstruction.options.seed);
+    SurfacePoints points =
+        sampleEvenly(surface, wanted, settings.product.reconstruction.options.seed);
     output.mesh.points = std::move(points.points);
     output.mesh.normals = std::move(points.normals);
     output.colors = interpolatedColors(mapped, points.locations);
   } else {
     const GridSphere grid = gridOf(settings, wanted, surface);
     output.frequency = grid.frequency;
-    output.mesh = spherical_param::resampleSurface(surface, grid);
+    output.mesh = resampleSurface(surface, grid);
     if (settings.series) {
-      output.mesh.points = spherical_param::evaluateSphericalHarmonics(
-          *output.harmonics, output.mesh.directions, settings.threads());
+      output.mesh.points =
+          evaluateSphericalHarmonics(*output.harmonics, output.mesh.directions, settings.threads());
       output.mesh.normals.resize(3, 0);
     }
   }
@@ -273,14 +264,12 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
   console.begin("verify");
   const ResampledMesh& mesh = output.mesh;
   if (!output.isCloud()) {
-    output.topology =
-        spherical_param::checkTopology(mesh.triangles, output.pointCount(), settings.threads());
-    output.measures = spherical_param::measureMesh(mesh.points, mesh.triangles, settings.threads());
-    spherical_param::Execution execution;
+    output.topology = checkTopology(mesh.triangles, output.pointCount(), settings.threads());
+    output.measures = measureMesh(mesh.points, mesh.triangles, settings.threads());
+    Execution execution;
     execution.threads = settings.threads();
     execution.progress = console.progress(0.5);
-    output.self_intersections =
-        spherical_param::findSelfIntersections(mesh.points, mesh.triangles, execution);
+    output.self_intersections = findSelfIntersections(mesh.points, mesh.triangles, execution);
     if (!settings.reads_image && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
@@ -304,8 +293,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   }
   if (settings.needsHarmonics()) {
     console.begin("harmonics");
-    output.harmonics =
-        spherical_param::computeSphericalHarmonics(surface, settings.degree, settings.threads());
+    output.harmonics = computeSphericalHarmonics(surface, settings.degree, settings.threads());
     output.stages.push_back(console.end());
   }
   console.begin("resample");
@@ -313,11 +301,10 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   output.stages.push_back(console.end(std::to_string(output.pointCount()) + " points"));
   if (settings.slides()) {
     console.begin("untangle");
-    output.untangling = spherical_param::untangle(surface, output.mesh, settings.threads());
+    output.untangling = untangle(surface, output.mesh, settings.threads());
     // Flips may remove what sliding leaves; the edges of an image are given.
     if (output.untangling->after > 0 && !settings.writes_image) {
-      output.flipped_edges =
-          spherical_param::removeIntersections(output.mesh, settings.threads()).flips;
+      output.flipped_edges = removeIntersections(output.mesh, settings.threads()).flips;
     }
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
   }
@@ -326,7 +313,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   }
   output.mesh.points = asWritten(output.mesh.points);
   if (settings.writes_image) {
-    output.image = spherical_param::geometryImageOfMesh(output.mesh);
+    output.image = geometryImageOfMesh(output.mesh);
   }
 }
 
@@ -336,17 +323,14 @@ void makeFromImage(const Settings& settings, Output& output, Console& console) {
   output.stages.push_back(console.end(output.pixels()));
   output.frequency = (output.image.side - 1) / 2;
   console.begin("resample");
-  output.mesh = spherical_param::meshOfGeometryImage(output.image);
+  output.mesh = meshOfGeometryImage(output.image);
   output.mesh.points = asWritten(output.mesh.points);
   output.stages.push_back(console.end(std::to_string(output.pointCount()) + " points"));
 }
 
-std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
-                                                 const MappedCloud& mapped, const Output& output) {
-  std::vector<spherical_param::Finding> findings;
-  if (!settings.reads_image) {
-    findings = findingsOf(mapped);
-  }
+std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,
+                                const Output& output) {
+  std::vector<Finding> findings = findingsOf(mapped);
   if (!output.self_intersections.empty()) {
     findings.push_back({"the output has self-intersections" +
                             std::string(settings.reads_image || settings.series
@@ -358,7 +342,7 @@ std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
 }
 
 std::size_t intersectingTriangles(const Output& output) {
-  return spherical_param::countTriangles(output.self_intersections);
+  return countTriangles(output.self_intersections);
 }
 
 /// Whether the output is sound, and what the mesh of the cloud leaves open, fills, cuts or joins.
@@ -387,8 +371,7 @@ std::string harmonicsText(const Settings& settings, const SphericalHarmonics& ha
       {"degree", harmonics.degree},
       {"convention",
        "position(u) = sum over l = 0 ... degree, m = -l ... l of xyz Y_lm(u), u a unit vector. "
-       "Real "
-       "spherical harmonics, orthonormal on the unit sphere (the integral of Y_lm Y_lm is 1), "
+       "Real spherical harmonics, orthonormal on the unit sphere (the integral of Y_lm Y_lm is 1), "
        "without the phase (-1)^m; m > 0 with cos(m phi), m < 0 with sin(|m| phi); phi is the "
        "longitude, from x to y, and z = cos(theta)"},
       {"rms_residual", harmonics.rms_residual}};
@@ -433,79 +416,30 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["volume"] = unless(is_cloud, output.measures.volume);
   json["area"] = unless(is_cloud, output.measures.area);
   json["self_intersections"] = unless(is_cloud, output.self_intersections.size());
-  json["untangling"] = nullptr;
-  if (output.untangling) {
-    json["untangling"] = {{"self_intersections_before", output.untangling->before},
-                          {"rounds", output.untangling->rounds},
-                          {"moved", output.untangling->moved},
-                          {"flipped_edges", output.flipped_edges}};
-  }
-  json["distance"] = nullptr;
-  if (output.distance) {
-    json["distance"] = {{"mean", output.distance->mean},
-                        {"rms", output.distance->rms},
-                        {"max", output.distance->max}};
-  }
-  json["harmonics"] = nullptr;
-  if (output.harmonics) {
-    json["harmonics"] = {{"degree", output.harmonics->degree},
-                         {"rms_residual", output.harmonics->rms_residual}};
-  }
+  const auto& untangling = output.untangling;
+  json["untangling"] = !untangling ? Json()
+                                   : Json({{"self_intersections_before", untangling->before},
+                                           {"rounds", untangling->rounds},
+                                           {"moved", untangling->moved},
+                                           {"flipped_edges", output.flipped_edges}});
+  const auto& distance = output.distance;
+  json["distance"] =
+      !distance ? Json()
+                : Json({{"mean", distance->mean}, {"rms", distance->rms}, {"max", distance->max}});
+  const auto& harmonics = output.harmonics;
+  json["harmonics"] =
+      !harmonics ? Json()
+                 : Json({{"degree", harmonics->degree}, {"rms_residual", harmonics->rms_residual}});
   json["stages"] = toJson(output.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
   json["findings"] = toJson(findingsOf(settings, mapped, output));
   return json;
 }
 
-void printVerdict(const Settings& settings, const MappedCloud& mapped, const Output& output,
-                  Console& console) {
-  const auto yes_or_no = [](bool value) { return value ? "yes" : "no"; };
-  if (!settings.reads_image) {
-    printMap(mapped, console);
-  }
-  if (output.image.side > 0) {
-    console.entry("geometry image", output.pixels());
-  }
-  const bool is_nearest = settings.points && *settings.points != output.pointCount();
-  console.entry("points", std::to_string(output.pointCount()) +
-                              (is_nearest ? " (the nearest possible to " +
-                                                std::to_string(*settings.points) + ")"
-                                          : ""));
-  if (output.harmonics) {
-    console.entry("harmonics", "degree " + std::to_string(output.harmonics->degree) +
-                                   ", residual " + formatted(output.harmonics->rms_residual, 4) +
-                                   " (root mean square)");
-  }
-  if (!output.isCloud()) {
-    const auto& topology = output.topology;
-    console.entry("triangles", std::to_string(output.mesh.triangles.cols()));
-    console.entry("closed", yes_or_no(topology.closed));
-    console.entry("manifold", yes_or_no(topology.manifold()));
-    console.entry("oriented", yes_or_no(topology.oriented));
-    console.entry("genus", topology.genus ? std::to_string(*topology.genus) : "undefined");
-    const bool were_more =
-        output.untangling && output.untangling->before > output.self_intersections.size();
-    console.entry("self-intersections",
-                  std::to_string(output.self_intersections.size()) +
-                      (were_more ? " (" + std::to_string(output.untangling->before) + " before " +
-                                       std::to_string(output.untangling->moved) +
-                                       " points were slid along the surface)"
-                                 : ""));
-    console.entry("volume", formatted(output.measures.volume, 6));
-    console.entry("area", formatted(output.measures.area, 6));
-  }
-  if (output.distance) {
-    console.entry("distance", formatted(output.distance->mean, 4) + ", " +
-                                  formatted(output.distance->rms, 4) + ", " +
-                                  formatted(output.distance->max, 4) +
-                                  " (mean, RMS, max; of the cloud's mesh, at its vertices)");
-  }
-}
-
 Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Output& output) {
-  Summary summary{settings.input, "", "", "nothing", {}};
-  if (!settings.reads_image) {
-    summary = summaryOf(settings.input, mapped.cloud);
+  Summary summary = summaryOf(settings.input, mapped.cloud);
+  if (settings.reads_image) {
+    summary.read = settings.input;
   }
   summary.verdict = verdictOf(output, mapped);
   summary.made = meshSize(output.pointCount(), output.mesh.triangles.cols());
@@ -548,12 +482,7 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
   output.stages.push_back(console.end());
 }
 
-void run(const std::vector<std::string>& words) {
-  Settings settings;
-  const CommandLine command_line(words, optionsOf(settings));
-  if (answerHelpOrVersion(command_line, toolText(), optionsOf(settings))) {
-    return;
-  }
+void run(const CommandLine& command_line, Settings& settings) {
   parse(command_line, settings);
   checkOutputs({settings.input}, outputsOf(settings));
   ToolRun run(settings.report, settings.product.reconstruction.strict, toolText().name,
@@ -569,11 +498,9 @@ void run(const std::vector<std::string>& words) {
     verify(settings, mapped, output, run.console);
   });
   store(settings, mapped, output, run);
-  run.publish([&] { return report(settings, mapped, output); },
-              [&] {
-                printVerdict(settings, mapped, output, run.console);
-                run.console.summary(summaryOf(settings, mapped, output));
-              });
+  const Json json = report(settings, mapped, output);
+  printFigures(json, run.console);
+  run.publish([&] { return json; }, summaryOf(settings, mapped, output));
   run.add("", findingsOf(settings, mapped, output));
   run.conclude(100 * intersectingTriangles(output) <=
                static_cast<std::size_t>(output.mesh.triangles.cols()));
@@ -582,5 +509,7 @@ void run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(toolText().name, argc, argv, run);
+  Settings settings;
+  return runTool(toolText(), argc, argv, optionsOf(settings),
+                 [&](const CommandLine& command_line) { run(command_line, settings); });
 }

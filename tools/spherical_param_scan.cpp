@@ -7,7 +7,6 @@
 #include "common/point_data.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "common/tool_run.h"
 #include "scan_shapes.h"
 
 #include <algorithm>
@@ -103,12 +102,7 @@ void parse(const std::string& name, const CommandLine& command_line, Settings& s
   command_line.apply(optionsOf(settings));
 }
 
-void run(const std::vector<std::string>& words) {
-  Settings settings;
-  const OptionTable options = optionsOf(settings);
-  const CommandLine command_line(words, options);
-  if (answerHelpOrVersion(command_line, toolText(), options))
-    return;
+void run(const CommandLine& command_line, Settings& settings) {
   if (command_line.has("list"))
     return printAll(listText());
   const auto [shape, output] = shapeAndOutput(command_line.others());
@@ -148,5 +142,7 @@ void run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(toolText().name, argc, argv, run);
+  Settings settings;
+  return runTool(toolText(), argc, argv, optionsOf(settings),
+                 [&](const CommandLine& command_line) { run(command_line, settings); });
 }

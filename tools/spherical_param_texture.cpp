@@ -7,7 +7,6 @@
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "common/textured_mesh.h"
-#include "common/tool_run.h"
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/version.h"
 
@@ -20,12 +19,8 @@
 
 namespace {
 
+using namespace spherical_param;
 using namespace spherical_param::tools;
-using spherical_param::BakeOptions;
-using spherical_param::SphereChart;
-using spherical_param::TextureAtlas;
-using spherical_param::TextureAtlasOptions;
-using spherical_param::TextureImage;
 
 const Names<SphereChart> chart_names = {
     {"equirectangular", SphereChart::Equirectangular},
@@ -152,7 +147,7 @@ struct Output {
   TextureAtlas atlas;
   TextureImage image;
   bool is_checkerboard = false;
-  std::vector<spherical_param::StageTime> stages;
+  std::vector<StageTime> stages;
 
   std::string pixels() const {
     return std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels";
@@ -169,30 +164,28 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
   mapped.cloud.offset = settings.report.offsetOf(formatOf(settings.output), *mapped.cloud.data);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
-  output.atlas =
-      spherical_param::makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
+  output.atlas = makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
   output.stages.push_back(console.end());
 
   console.begin("image");
   output.is_checkerboard = settings.cells || mapped.colors.empty();
   if (output.is_checkerboard) {
-    output.image = spherical_param::bakeCheckerboard(
-        output.atlas, mapped.map.sphere, settings.cells.value_or(usual_cells), settings.bake);
+    output.image = bakeCheckerboard(output.atlas, mapped.map.sphere,
+                                    settings.cells.value_or(usual_cells), settings.bake);
   } else {
     Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.mesh.points.cols());
     for (Eigen::Index v = 0; v < colors.cols(); ++v) {
       const Color& color = mapped.colors[static_cast<std::size_t>(v)];
       colors.col(v) << color[0], color[1], color[2];
     }
-    output.image = spherical_param::bakeColors(output.atlas, colors, settings.bake);
+    output.image = bakeColors(output.atlas, colors, settings.bake);
   }
-  output.atlas = spherical_param::joinCuts(std::move(output.atlas), mapped.mesh);
+  output.atlas = joinCuts(std::move(output.atlas), mapped.mesh);
   output.stages.push_back(console.end(output.pixels()));
 }
 
-std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
-                                                 const MappedCloud& mapped) {
-  std::vector<spherical_param::Finding> findings = findingsOf(mapped);
+std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped) {
+  std::vector<Finding> findings = findingsOf(mapped);
   if (mapped.colors.empty() && !settings.cells) {
     findings.push_back({"the cloud has no colours: the texture is a checkerboard", "", "", false});
   }
@@ -228,31 +221,21 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   return json;
 }
 
-void printVerdict(const Settings& settings, const MappedCloud& mapped, const Output& output,
-                  Console& console) {
-  printMap(mapped, console);
-  console.entry("texture", std::string(output.is_checkerboard ? "checkerboard" : "colours") + ", " +
-                               output.pixels() + ", " + formatted(100.0 * output.share(1), 4) +
-                               " % in triangles");
-  console.entry("cut handles", std::to_string(mapped.cloud.surface().genus()));
-  console.entry("cut vertices", std::to_string(cutVertices(mapped, output)));
-  console.entry("coordinates", std::to_string(output.atlas.coordinates.cols()));
-  console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
+Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Output& output) {
   Summary summary = summaryOf(settings.input, mapped.cloud);
   summary.made = meshSize(output.atlas.vertices.size(), output.atlas.triangles.cols()) + ", " +
                  output.pixels();
   summary.written = outputsOf(settings);
   summary.written.front() += notWritten(false, formatOf(settings.output), mapped.cloud.offset);
-  console.summary(summary);
+  return summary;
 }
 
 /// Stores all files but the report, none of them under its name yet.
 void store(const Settings& settings, const MappedCloud& mapped, Output& output, ToolRun& run) {
   run.console.begin("write");
   const auto& surface = mapped.cloud.surface();
-  const spherical_param::Positions points =
-      vertexPositions(mapped.cloud, surface).colwise() -
-      Eigen::Map<const Eigen::Vector3d>(mapped.cloud.offset.data());
+  const Positions points = vertexPositions(mapped.cloud, surface).colwise() -
+                           Eigen::Map<const Eigen::Vector3d>(mapped.cloud.offset.data());
   const PointData vertices = verticesOf(output.atlas, points, surface.triangles);
   MeshTexture texture;
   texture.png = encodePng(output.image);
@@ -277,24 +260,19 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
   output.stages.push_back(run.console.end());
 }
 
-void run(const std::vector<std::string>& words) {
-  Settings settings;
-  const OptionTable options = optionsOf(settings);
-  const CommandLine command_line(words, options);
-  if (answerHelpOrVersion(command_line, toolText(), options)) {
-    return;
-  }
+void run(const CommandLine& command_line, Settings& settings) {
   parse(command_line, settings);
   checkOutputs({settings.input}, outputsOf(settings));
   ToolRun run(settings.report, settings.product.reconstruction.strict, toolText().name,
-              {{"input", settings.input}, {"output", settings.output}}, options);
+              {{"input", settings.input}, {"output", settings.output}}, optionsOf(settings));
   MappedCloud mapped;
   Output output;
   runLibrary("cannot texture " + inQuotes(settings.input), kReportIt,
              [&] { make(settings, mapped, output, run.console); });
   store(settings, mapped, output, run);
-  run.publish([&] { return report(settings, mapped, output); },
-              [&] { printVerdict(settings, mapped, output, run.console); });
+  const Json json = report(settings, mapped, output);
+  printFigures(json, run.console);
+  run.publish([&] { return json; }, summaryOf(settings, mapped, output));
   run.add("", findingsOf(settings, mapped));
   run.conclude(mapped.cloud.surface().isUsable());
 }
@@ -302,5 +280,7 @@ void run(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(toolText().name, argc, argv, run);
+  Settings settings;
+  return runTool(toolText(), argc, argv, optionsOf(settings),
+                 [&](const CommandLine& command_line) { run(command_line, settings); });
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -18,20 +19,27 @@ using tool_test::RunOptions;
 using tool_test::RunResult;
 using Words = std::vector<std::string>;
 
-const std::string mesh_tool = RECONSTRUCTION_TOOL;
-const std::string morph_tool = MORPH_TOOL;
-const std::string remesh_tool = REMESH_TOOL;
-const std::string scan_tool = SCAN_TOOL;
-const std::string texture_tool = TEXTURE_TOOL;
+const std::map<std::string, std::string> programs = {{"mesh", RECONSTRUCTION_TOOL},
+                                                     {"remesh", REMESH_TOOL},
+                                                     {"morph", MORPH_TOOL},
+                                                     {"texture", TEXTURE_TOOL},
+                                                     {"scan", SCAN_TOOL}};
 
 constexpr int failed = 1;
 constexpr int wrong_usage = 2;
 
-struct Row {
-  std::string tool;
-  Words arguments;
-  std::string cause;  ///< part of the first line on the standard error
-};
+/// A command line, with | between its words, and a part of the first line on the standard error.
+using Row = std::pair<std::string, std::string>;
+
+Words wordsOf(const std::string& line) {
+  Words words(1);
+  for (const char c : line)
+    if (c == '|')
+      words.emplace_back();
+    else
+      words.back() += c;
+  return words;
+}
 
 /// Clouds in.xyz and in.ply, a broken geometry image in.tif, and an output of an earlier run.
 class BadInput : public tool_test::ToolTest {
@@ -43,23 +51,50 @@ protected:
     write("kept.ply", "kept");
   }
 
-  void expectAllRefused(const std::vector<Row>& rows, int exit_code) const {
-    for (const Row& row : rows) {
-      SCOPED_TRACE(row.tool + " " + testing::PrintToString(row.arguments));
-      expectRefused(row.tool, row.arguments, exit_code, row.cause);
-    }
-  }
-
-  /// Options that the tool refuses beside good files.
-  void expectOptionsRefused(const std::string& tool, const Words& files,
-                            const std::vector<std::pair<Words, std::string>>& cases) const {
-    for (const auto& [options, cause] : cases) {
-      const Words arguments = tool_test::with(files, options);
-      SCOPED_TRACE(tool + " " + testing::PrintToString(arguments));
-      expectRefused(tool, arguments, wrong_usage, cause);
+  void expectAllRefused(const std::vector<Row>& rows, int exit_code,
+                        const RunOptions& options = {}) const {
+    for (const auto& [line, cause] : rows) {
+      SCOPED_TRACE(line);
+      Words words = wordsOf(line);
+      const std::string program = programs.at(words.front());
+      words.erase(words.begin());
+      expectRefused(program, words, exit_code, cause, options);
     }
   }
 };
+
+TEST_F(BadInput, MistakesThatEveryToolRefuses) {
+  for (const std::string run : {"mesh|in.xyz|out.ply", "remesh|in.xyz|out.ply",
+                                "morph|in.xyz|in.ply|out.ply", "texture|in.xyz|out.ply"}) {
+    const std::string tool = run.substr(0, run.find('|'));
+    const std::string others = run.substr(run.find("in.xyz") + 6);
+    expectAllRefused({{tool, " file is missing"},
+                      {run.substr(0, run.rfind('|')), "the output file is missing"},
+                      {run + "|b.ply", "one file too many: 'b.ply'"},
+                      {tool + "|in.foo" + others, "'in.foo' has an extension"},
+                      {tool + "|in.stl" + others, "'in.stl' is STL"},
+                      {run.substr(0, run.rfind('|')) + "|out.pcd", "'out.pcd' has an extension"},
+                      {run.substr(0, run.rfind('|')) + "|in.xyz", "an extension"},
+                      {run + "|-quite", "unrecognised option '-quite'"},
+                      {run + "|-k|2", "option -k: '2' is not allowed"},
+                      {run + "|-json|", "option -json: the name of the file is empty"},
+                      {run + "|-json|in.xyz", "'in.xyz' would overwrite 'in.xyz'"},
+                      {run + "|-columns|x,y", "has no x, y and z"},
+                      {run + "|-quiet|-verbose", "exclude each other"}},
+                     wrong_usage);
+    expectAllRefused({{tool + "|no.xyz" + others, "cannot read 'no.xyz': No such file"},
+                      {run.substr(0, run.rfind('|')) + "|no/out.ply", "missing directory"},
+                      {run + "|-json|no/r.json", "missing directory"}},
+                     failed);
+    RunOptions full;
+    full.file_size_limit = 4000;
+    expectAllRefused({{run + "|-quiet", "File too large"}}, failed, full);
+    RunOptions full_output;
+    full_output.standard_output = "/dev/full";
+    expectAllRefused({{run + "|-json|-", "standard output"}, {tool + "|-h", "standard output"}},
+                     failed, full_output);
+  }
+}
 
 TEST_F(BadInput, FormatsThatAreNotReadAreNamedWithACommandThatConvertsThem) {
   write("in.dat", "LASF" + std::string(9, '\0'));
@@ -74,7 +109,7 @@ TEST_F(BadInput, FormatsThatAreNotReadAreNamedWithACommandThatConvertsThem) {
            {{"in.bag"}, " is a bag of ROS", "rosrun pcl_ros bag_to_pcd "},
            {{"in.mcap", "in.db3"}, " is a bag of ROS 2", "ros2 bag play "}})
     for (const std::string& name : file) {
-      const auto result = run(mesh_tool, {name, "out.ply"});
+      const auto result = run(RECONSTRUCTION_TOOL, {name, "out.ply"});
       EXPECT_EQ(result.exit_code, wrong_usage);
       EXPECT_NE(result.errors.find(format), std::string::npos) << result.errors;
       EXPECT_NE(result.errors.find("\n  remedy: convert it: " + command), std::string::npos)
@@ -85,148 +120,118 @@ TEST_F(BadInput, FormatsThatAreNotReadAreNamedWithACommandThatConvertsThem) {
 TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
   ASSERT_EQ(symlink("in.ply", directory.file("link.ply").c_str()), 0);
   expectAllRefused(
-      {{mesh_tool, {}, "the input file is missing"},
-       {mesh_tool, {"in.xyz"}, "the output file"},
-       {mesh_tool, {"in.xyz", "a.ply", "b.ply"}, "too many: 'b.ply'"},
-       {mesh_tool, {"in.foo", "out.ply"}, "'in.foo' has an extension"},
-       {mesh_tool, {"in\n.las", "out.ply"}, "'in?.las'"},
-       {mesh_tool, {"in.xyz", "out"}, "'out' has an extension"},
-       {mesh_tool, {"in.xyz", "out.pcd"}, "'out.pcd' has an extension"},
-       {mesh_tool, {"in.xyz", "out.ply", "-sphere", ""}, "is empty"},
-       {mesh_tool, {"in.xyz", "out.ply", "-json", ""}, "-json"},
-       {mesh_tool, {"in.xyz", "./a.obj", "-sphere", "a.obj"}, "would overwrite"},
-       {mesh_tool, {"in.xyz", "out.ply", "-json", "in.xyz"}, "would overwrite"},
-       {mesh_tool, {"in.ply", "link.ply"}, "would overwrite"},
-       {mesh_tool, {"in.xyz", "out_%03d.ply", "-parts", "all"}, "is a pattern for several parts"},
-       {scan_tool, {}, "the shape is missing"},
-       {scan_tool, {"sphere"}, "the output file"},
-       {scan_tool, {"cube", "out.pcd"}, "unknown shape 'cube'"},
-       {scan_tool, {"sphere", "out.stl"}, "extension"},
-       {scan_tool, {"sphere", "out.ply", "-truth", "./out.ply"}, "would overwrite"},
-       {remesh_tool, {}, "the input file is missing"},
-       {remesh_tool, {"in.xyz", "a.ply", "b.ply"}, "one file too many"},
-       {remesh_tool, {"in.xyz", "out.png"}, "out.png"},
-       {remesh_tool, {"in.xyz", "out.stl", "-grid", "even"}, "out.stl"},
-       {remesh_tool, {"in.stl", "out.ply"}, "in.stl"},
-       {remesh_tool, {"in.tif", "out.tif"}, "geometry image"},
-       {remesh_tool, {"in.xyz", "out.ply", "-harmonics", ""}, "-harmonics"},
-       {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "out.ply"}, "would overwrite"},
-       {morph_tool, {"a.ply"}, "the second file is missing"},
-       {morph_tool, {"in.ply", "in.xyz"}, "the output file"},
-       {morph_tool, {"in.ply", "in.xyz", "m.ply", "n.ply"}, "one file too many"},
-       {morph_tool, {"in.ply", "in.xyz", "m.xyz"}, "m.xyz"},
-       {morph_tool, {"in.ply", "in.foo", "m.ply"}, "in.foo"},
-       {morph_tool, {"in.ply", "in.xyz", "m_%s.ply"}, "% that is not a frame number"},
-       {morph_tool, {"in.ply", "in.xyz", "m_%d_%d.ply"}, "% that is not a frame number"},
-       {morph_tool, {"in.ply", "in.xyz", "m_%12d.ply"}, "% that is not a frame number"},
-       {morph_tool, {"in.ply", "in.xyz", "m_%%.ply"}, "% that is not a frame number"},
-       {morph_tool, {"in.ply", "in.xyz", "m.ply", "-pairs", ""}, "-pairs"},
-       {morph_tool, {"in.ply", "in.xyz", "m.ply", "-json", "m_001.ply"}, "would overwrite"},
-       {morph_tool, {"in.ply", "m_001.ply", "m.ply"}, "would overwrite"},
-       {texture_tool, {}, "the input file is missing"},
-       {texture_tool, {"in.ply", "out.stl"}, "out.stl"},
-       {texture_tool, {"in.glb", "out.glb"}, "in.glb"},
-       {texture_tool, {"in.ply", "in.ply"}, "would overwrite"},
-       {texture_tool, {"in.ply", "out.ply", "-json", "out.png"}, "would overwrite"},
-       {texture_tool, {"in.ply", "out.glb", "-image", "out.png"}, "-image"},
-       {texture_tool, {"in.ply", "out.obj", "-image", "out.jpg"}, "out.jpg"},
-       {texture_tool, {"in.ply", "out.obj", "-image", "a b.png"}, "a b.png"},
-       {texture_tool, {"in.ply", "a b.obj"}, "a b"},
-       {texture_tool, {"in.ply", "out.ply", "-image", "a\nb.png"}, "a?b.png"}},
+      {{"mesh|in\n.las|out.ply", "'in?.las'"},
+       {"mesh|in.xyz|out", "'out' has an extension"},
+       {"mesh|in.xyz|out.ply|-sphere|", "-sphere"},
+       {"mesh|in.xyz|./a.obj|-sphere|a.obj", "would overwrite"},
+       {"mesh|in.ply|link.ply", "would overwrite"},
+       {"mesh|in.xyz|out_%03d.ply|-parts|all", "is a pattern for several parts"},
+       {"mesh|in.xyz|out.ply|-sphere|s%03d.ply", "is a pattern, but the output is one file"},
+       {"scan", "the shape is missing"},
+       {"scan|sphere", "the output file"},
+       {"scan|cube|out.pcd", "unknown shape 'cube'"},
+       {"scan|sphere|out.stl", "extension"},
+       {"scan|sphere|out.ply|-truth|./out.ply", "would overwrite"},
+       {"remesh|in.xyz|out.png", "out.png"},
+       {"remesh|in.xyz|out.stl|-grid|even", "out.stl"},
+       {"remesh|in.tif|out.tif", "geometry image"},
+       {"remesh|in.xyz|out.ply|-harmonics|", "-harmonics"},
+       {"remesh|in.xyz|out.ply|-harmonics|out.ply", "would overwrite"},
+       {"morph|in.ply|in.xyz|m_%s.ply", "% that is not a frame number"},
+       {"morph|in.ply|in.xyz|m_%d_%d.ply", "% that is not a frame number"},
+       {"morph|in.ply|in.xyz|m_%12d.ply", "% that is not a frame number"},
+       {"morph|in.ply|in.xyz|m_%%.ply", "% that is not a frame number"},
+       {"morph|in.ply|in.xyz|m.ply|-pairs|", "-pairs"},
+       {"morph|in.ply|in.xyz|m.ply|-json|m_001.ply", "would overwrite"},
+       {"morph|in.ply|m_001.ply|m.ply", "would overwrite"},
+       {"texture|in.ply|in.ply", "would overwrite"},
+       {"texture|in.ply|out.ply|-json|out.png", "would overwrite"},
+       {"texture|in.ply|out.glb|-image|out.png", "-image"},
+       {"texture|in.ply|out.obj|-image|out.jpg", "out.jpg"},
+       {"texture|in.ply|out.obj|-image|a b.png", "a b.png"},
+       {"texture|in.ply|a b.obj", "a b"},
+       {"texture|in.ply|out.ply|-image|a\nb.png", "a?b.png"}},
       wrong_usage);
-  EXPECT_NE(run(mesh_tool, {"in.vtk", "out.ply"}).errors.find("pcl_vtk2pcd in.vtk out.pcd"),
-            std::string::npos);
 }
 
 TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
-  expectOptionsRefused(mesh_tool, {"in.xyz", "out.ply"},
-                       {{{"-diameter", "1"}, "'-diameter'"},
-                        {{"-iter", "5"}, "'-iter'"},
-                        {{"-ki", "5"}, "'-ki'"},  // no abbreviations
-                        {{"-quiet=1"}, "-quiet"},
-                        {{"-x", "--", "-k"}, "'-x'"},
-                        {{"-k"}, "missing"},
-                        {{"-k", "-quiet"}, "has no value"},
-                        {{"-k", "5", "-k", "6"}, "more than once"},
-                        {{"-k", "2"}, "option -k: '2'"},
-                        {{"-k", "25.5"}, "option -k: '25.5'"},
-                        {{"-tolerance", "nan"}, "option -tolerance: 'nan'"},
-                        {{"-damping", ""}, "option -damping: ''"},
-                        {{"-method", "ball"}, "option -method: 'ball'"},
-                        {{"-weights", "Uniform"}, "option -weights: 'Uniform'"},
-                        {{"-outliers", "1001"}, "option -outliers: '1001'"},
-                        {{"-history_frames", "5"}, "'-history_frames'"},
-                        {{"-parts", "some"}, "'some' is not allowed"},
-                        {{"-parts", "each", "-min-points", "3"}, "-min-points"},
-                        {{"-topology", "torus"}, "'torus' is not allowed"},
-                        {{"-sphere", "s%03d.ply"}, "is a pattern, but the output is one file"}});
-  expectOptionsRefused(scan_tool, {"sphere", "out.pcd"},
-                       {{{"more"}, "one word too many: 'more'"},
-                        {{"-points", "3"}, "option -points: '3'"},
-                        {{"-seed", "-1"}, "option -seed: '-1'"}});
-  expectOptionsRefused(remesh_tool, {"in.xyz", "out.xyz", "-grid", "even"},
-                       {{{"-points", "3"}, "-points"}, {{"-points", "16777217"}, "-points"}});
-  expectOptionsRefused(remesh_tool, {"in.xyz", "out.tif"},
-                       {{{"-side", "10"}, "10 is even"}, {{"-side", "1"}, "-side"}});
-  expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
-                       {{{"-grid", "cubic"}, "'cubic' is not allowed"},
-                        {{"-harmonics", "c.json", "-degree", "513"}, "-degree"},
-                        {{"-area-weight", "1.1"}, "-area-weight"},
-                        {{"-map-sweeps", "1001"}, "-map-sweeps"}});
-  expectOptionsRefused(morph_tool, {"in.ply", "in.xyz", "m.ply"},
-                       {{{"-frames", "1"}, "-frames"},
-                        {{"-align", "yes"}, "option -align: 'yes'"},
-                        {{"-connectivity", "resampled", "-samples", "11"}, "-samples"}});
-  expectOptionsRefused(texture_tool, {"in.ply", "out.glb"},
-                       {{{"more.glb"}, "more.glb"},
-                        {{"-chart", "mercator"}, "mercator"},
-                        {{"-size", "15"}, "-size"},
-                        {{"-gutter", "257"}, "-gutter"},
-                        {{"-checker", "0"}, "-checker"}});
+  expectAllRefused({{"mesh|in.xyz|out.ply|-ki|5", "'-ki'"},
+                    {"mesh|in.xyz|out.ply|-quiet=1", "-quiet"},
+                    {"mesh|in.xyz|out.ply|-x|--|-k", "'-x'"},
+                    {"mesh|in.xyz|out.ply|-k", "missing"},
+                    {"mesh|in.xyz|out.ply|-k|-quiet", "has no value"},
+                    {"mesh|in.xyz|out.ply|-k|5|-k|6", "more than once"},
+                    {"mesh|in.xyz|out.ply|-k|25.5", "option -k: '25.5'"},
+                    {"mesh|in.xyz|out.ply|-tolerance|nan", "option -tolerance: 'nan'"},
+                    {"mesh|in.xyz|out.ply|-damping|", "option -damping: ''"},
+                    {"mesh|in.xyz|out.ply|-method|ball", "option -method: 'ball'"},
+                    {"mesh|in.xyz|out.ply|-outliers|1001", "option -outliers: '1001'"},
+                    {"mesh|in.xyz|out.ply|-history_frames|5", "'-history_frames'"},
+                    {"mesh|in.xyz|out.ply|-parts|some", "'some' is not allowed"},
+                    {"mesh|in.xyz|out.ply|-parts|each|-min-points|3", "-min-points"},
+                    {"mesh|in.xyz|out.ply|-topology|torus", "'torus' is not allowed"},
+                    {"scan|sphere|out.pcd|more", "one word too many: 'more'"},
+                    {"scan|sphere|out.pcd|-points|3", "option -points: '3'"},
+                    {"scan|sphere|out.pcd|-seed|-1", "option -seed: '-1'"},
+                    {"remesh|in.xyz|out.xyz|-grid|even|-points|3", "-points"},
+                    {"remesh|in.xyz|out.xyz|-grid|even|-points|16777217", "-points"},
+                    {"remesh|in.xyz|out.tif|-side|10", "10 is even"},
+                    {"remesh|in.xyz|out.tif|-side|1", "-side"},
+                    {"remesh|in.xyz|out.ply|-grid|cubic", "'cubic' is not allowed"},
+                    {"remesh|in.xyz|out.ply|-harmonics|c.json|-degree|513", "-degree"},
+                    {"remesh|in.xyz|out.ply|-area-weight|1.1", "-area-weight"},
+                    {"remesh|in.xyz|out.ply|-map-sweeps|1001", "-map-sweeps"},
+                    {"morph|in.ply|in.xyz|m.ply|-frames|1", "-frames"},
+                    {"morph|in.ply|in.xyz|m.ply|-align|yes", "option -align: 'yes'"},
+                    {"morph|in.ply|in.xyz|m.ply|-connectivity|resampled|-samples|11", "-samples"},
+                    {"texture|in.ply|out.glb|-chart|mercator", "mercator"},
+                    {"texture|in.ply|out.glb|-size|15", "-size"},
+                    {"texture|in.ply|out.glb|-gutter|257", "-gutter"},
+                    {"texture|in.ply|out.glb|-checker|0", "-checker"}},
+                   wrong_usage);
 }
 
 TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   const std::string nothing = " does nothing with ";
-  expectOptionsRefused(
-      mesh_tool, {"in.xyz", "out.ply"},
-      {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-method default"},
-       {{"-min-points", "60", "-topology", "sphere"}, "-min-points" + nothing + "-parts all"},
-       {{"-time-limit", "1", "-method", "paper"}, "-time-limit" + nothing + "-method paper"}});
-  expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
-                       {{{"-side", "9"}, "-side" + nothing},
-                        {{"-grid", "even", "-series"}, "-series" + nothing},
-                        {{"-grid", "even", "-sphere", "s.ply"}, "-sphere" + nothing},
-                        {{"-degree", "5"}, "-degree" + nothing},
-                        {{"-map-sweeps", "0", "-area-weight", "1"}, "-area-weight" + nothing}});
-  expectOptionsRefused(remesh_tool, {"in.xyz", "out.tif"},
-                       {{{"-side", "9", "-points", "9"}, "-side" + nothing},
-                        {{"-series"}, "-series" + nothing},
-                        {{"-offset", "1,2,3"}, "-offset" + nothing},
-                        {{"-ascii"}, "-ascii" + nothing}});
+  expectAllRefused(
+      {{"mesh|in.xyz|out.ply|-max-iterations|5", "-max-iterations" + nothing + "-method default"},
+       {"mesh|in.xyz|out.ply|-min-points|60|-topology|sphere",
+        "-min-points" + nothing + "-parts all"},
+       {"mesh|in.xyz|out.ply|-time-limit|1|-method|paper",
+        "-time-limit" + nothing + "-method paper"},
+       {"remesh|in.xyz|out.ply|-side|9", "-side" + nothing},
+       {"remesh|in.xyz|out.ply|-grid|even|-series", "-series" + nothing},
+       {"remesh|in.xyz|out.ply|-grid|even|-sphere|s.ply", "-sphere" + nothing},
+       {"remesh|in.xyz|out.ply|-degree|5", "-degree" + nothing},
+       {"remesh|in.xyz|out.ply|-map-sweeps|0|-area-weight|1", "-area-weight" + nothing},
+       {"remesh|in.xyz|out.tif|-side|9|-points|9", "-side" + nothing},
+       {"remesh|in.xyz|out.tif|-series", "-series" + nothing},
+       {"remesh|in.xyz|out.tif|-offset|1,2,3", "-offset" + nothing},
+       {"remesh|in.xyz|out.tif|-ascii", "-ascii" + nothing},
+       {"morph|in.ply|in.xyz|m.ply|-samples|100", "-samples" + nothing},
+       {"texture|in.ply|out.glb|-ascii", "-ascii" + nothing}},
+      wrong_usage);
   for (const char* option : {"-points=9", "-fit=linear", "-k=9", "-map-sweeps=2", "-grid=even",
                              "-series", "-harmonics=c.json"})
-    expectOptionsRefused(remesh_tool, {"in.tif", "out.ply"}, {{{option}, nothing}});
-  expectOptionsRefused(morph_tool, {"in.ply", "in.xyz", "m.ply"},
-                       {{{"-samples", "100"}, "-samples" + nothing}});
-  expectRefused(texture_tool, {"in.ply", "out.glb", "-ascii"}, wrong_usage, "-ascii");
+    expectAllRefused({{std::string("remesh|in.tif|out.ply|") + option, nothing}}, wrong_usage);
 }
 
 TEST_F(BadInput, MeshesWithHandlesHaveNoMapToOneSphere) {
-  expectSuccess(scan_tool, {"torus", "torus.xyz", "-points", "1500"});
+  expectSuccess(SCAN_TOOL, {"torus", "torus.xyz", "-points", "1500"});
   write("both.xyz", tool_test::linesOf(tool_test::ellipsoid(2000, {1, 1, 1}, {9, 0, 0})) +
                         content("torus.xyz"));
   const std::string cause = "'torus.xyz' has no map to one sphere: its mesh has 1 handle";
-  expectAllRefused({{mesh_tool, {"torus.xyz", "out.ply", "-sphere", "s.ply"}, cause},
-                    {mesh_tool,
-                     {"both.xyz", "out%03d.ply", "-parts", "each", "-sphere", "s%03d.ply"},
+  expectAllRefused({{"mesh|torus.xyz|out.ply|-sphere|s.ply", cause},
+                    {"mesh|both.xyz|out%03d.ply|-parts|each|-sphere|s%03d.ply",
                      "part 2 of 'both.xyz' has no map to one sphere"},
-                    {remesh_tool, {"torus.xyz", "out.ply", "-handles", "auto"}, cause},
-                    {morph_tool, {"in.xyz", "torus.xyz", "out.ply", "-handles", "auto"}, cause}},
+                    {"remesh|torus.xyz|out.ply|-handles|auto", cause},
+                    {"morph|in.xyz|torus.xyz|out.ply|-handles|auto", cause}},
                    failed);
   write("tangle.xyz", tool_test::linesOf(spherical_param::test::terraces()));
-  expectRefused(mesh_tool, {"tangle.xyz", "out.ply", "-sphere", "s.ply"}, failed,
-                "'tangle.xyz' has no map to one sphere: it is a tangle");
-  run(mesh_tool,
+  expectAllRefused({{"mesh|tangle.xyz|out.ply|-sphere|s.ply",
+                     "'tangle.xyz' has no map to one sphere: it is a tangle"}},
+                   failed);
+  run(RECONSTRUCTION_TOOL,
       {"torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", "0"});
   EXPECT_TRUE(mesh("s.ply").isSphere());
 }
@@ -241,105 +246,76 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
   ASSERT_EQ(mkdir(directory.file("folder.ply").c_str(), 0755), 0);
   ASSERT_EQ(mkfifo(directory.file("pipe.ply").c_str(), 0644), 0);
   expectAllRefused(
-      {{mesh_tool, {"no.pcd", "out.ply"}, "No such file"},
-       {mesh_tool, {"folder.ply", "out.ply"}, "is a directory"},
-       {mesh_tool, {"pipe.ply", "out.ply"}, "not a regular file"},
-       {mesh_tool, {"empty.ply", "out.ply"}, "is empty"},
-       {mesh_tool, {"three.xyz", "out.ply"}, "at least 4"},
-       {mesh_tool,
-        {"in.xyz", "out.ply", "-parts", "each", "-min-points", "501"},
-        "no part has min_points = 501"},
-       {mesh_tool,
-        {"flat.xyz", "out.ply", "-topology", "sphere"},
+      {{"mesh|folder.ply|out.ply", "is a directory"},
+       {"mesh|pipe.ply|out.ply", "not a regular file"},
+       {"mesh|empty.ply|out.ply", "is empty"},
+       {"mesh|three.xyz|out.ply", "at least 4"},
+       {"mesh|in.xyz|out.ply|-parts|each|-min-points|501", "no part has min_points = 501"},
+       {"mesh|flat.xyz|out.ply|-topology|sphere",
         "cannot mesh 'flat.xyz': all points lie in one plane"},
-       {mesh_tool,
-        {"outliers.xyz", "out.ply", "-topology", "sphere", "-outliers", "0"},
+       {"mesh|outliers.xyz|out.ply|-topology|sphere|-outliers|0",
         "all points lie in one plane (left out: 1 stray point)"},
-       {remesh_tool, {"no.xyz", "out.ply"}, "no.xyz"},
-       {remesh_tool, {"no.tif", "out.ply"}, "no.tif"},
-       {remesh_tool, {"in.tif", "out.ply"}, "in.tif"},
-       {remesh_tool, {"flat.xyz", "out.ply"}, "cannot mesh 'flat.xyz'"},
-       {remesh_tool,
-        {"open.xyz", "out.tif", "-surface", "open"},
-        "a geometry image has no openings"},
-       {morph_tool, {"in.ply", "no.ply", "m.ply"}, "no.ply"},
-       {morph_tool, {"in.ply", "flat.xyz", "m.ply"}, "cannot mesh 'flat.xyz'"},
-       {morph_tool, {"in.ply", "in.xyz", "m.ply", "-pairs", "pairs.txt", "-quiet"}, "line 2"},
-       {texture_tool, {"no.ply", "out.glb"}, "no.ply"}},
+       {"remesh|no.tif|out.ply", "no.tif"},
+       {"remesh|in.tif|out.ply", "in.tif"},
+       {"remesh|flat.xyz|out.ply", "cannot mesh 'flat.xyz'"},
+       {"remesh|open.xyz|out.tif|-surface|open", "a geometry image has no openings"},
+       {"morph|in.ply|flat.xyz|m.ply", "cannot mesh 'flat.xyz'"},
+       {"morph|in.ply|in.xyz|m.ply|-pairs|pairs.txt|-quiet", "line 2"}},
       failed);
 }
 
 TEST_F(BadInput, FilesThatCannotBeWrittenAreAFailureBeforeTheWork) {
   ASSERT_EQ(mkdir(directory.file("folder.ply").c_str(), 0755), 0);
   ASSERT_EQ(symlink("missing/out.ply", directory.file("dangling.ply").c_str()), 0);
-  expectAllRefused(
-      {{mesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
-       {mesh_tool, {"in.xyz", "in.xyz/out.ply"}, "out.ply"},
-       {mesh_tool, {"in.xyz", "folder.ply"}, "is a directory"},
-       {mesh_tool, {"in.xyz", "dangling.ply"}, "missing directory"},
-       {mesh_tool, {"in.xyz", "out.ply", "-json", "no/r.json"}, "missing directory"},
-       {remesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
-       {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "no/c.json"}, "missing directory"},
-       {morph_tool, {"in.ply", "in.xyz", "no/m.ply"}, "missing directory"},
-       {texture_tool, {"in.ply", "no/out.glb"}, "missing directory"},
-       {texture_tool, {"in.ply", "out.ply", "-image", "no/out.png"}, "missing directory"}},
-      failed);
+  expectAllRefused({{"mesh|in.xyz|in.xyz/out.ply", "out.ply"},
+                    {"mesh|in.xyz|folder.ply", "is a directory"},
+                    {"mesh|in.xyz|dangling.ply", "missing directory"},
+                    {"remesh|in.xyz|out.ply|-harmonics|no/c.json", "missing directory"},
+                    {"texture|in.ply|out.ply|-image|no/out.png", "missing directory"}},
+                   failed);
 }
 
 TEST_F(BadInput, FilesWithoutRightsAreAFailure) {
   RunOptions unprivileged;
   unprivileged.unprivileged = true;
-  if (run(mesh_tool, {"-version"}, unprivileged).exit_code != 0)
+  if (run(RECONSTRUCTION_TOOL, {"-version"}, unprivileged).exit_code != 0)
     GTEST_SKIP() << "the tool is in a place that root alone may enter";
   ASSERT_EQ(mkdir(directory.file("closed").c_str(), 0555), 0);
   write("secret.xyz", "1 2 3\n");
   ASSERT_EQ(chmod(directory.file("secret.xyz").c_str(), 0000), 0);
   ASSERT_EQ(chmod(directory.file("kept.ply").c_str(), 0444), 0);
-  for (const Words& files : std::vector<Words>{
-           {"secret.xyz", "out.ply"}, {"in.xyz", "closed/out.ply"}, {"in.xyz", "kept.ply"}}) {
-    SCOPED_TRACE(testing::PrintToString(files));
-    expectRefused(mesh_tool, files, failed, "Permission denied", unprivileged);
-  }
+  const std::string denied = "Permission denied";
+  expectAllRefused({{"mesh|secret.xyz|out.ply", denied},
+                    {"mesh|in.xyz|closed/out.ply", denied},
+                    {"mesh|in.xyz|kept.ply", denied}},
+                   failed, unprivileged);
 }
 
 TEST_F(BadInput, AFullDiskIsAFailureAndKeepsTheOldFile) {
-  // Room for no output; or for a mesh, but not for more.
-  constexpr std::size_t small = 4000;
-  constexpr std::size_t medium = 30000;
-  const std::string full = "File too large";
-  const std::vector<std::pair<Row, std::size_t>> cases = {
-      {{mesh_tool, {"in.xyz", "kept.ply"}, "cannot write 'kept.ply': " + full}, small},
-      {{mesh_tool, {"in.xyz", "kept.ply", "-sphere", "s.stl"}, "cannot write 's.stl': " + full},
-       medium},
-      {{mesh_tool,
-        {"in.xyz", "kept.ply", "-json", "r.json", "-method", "paper", "-tolerance", "0"},
-        "cannot write 'r.json': " + full},
-       medium},
-      {{remesh_tool, {"in.xyz", "kept.ply", "-harmonics", "c.json"}, full}, medium / 2},
-      {{remesh_tool, {"in.xyz", "a.tif", "-side", "65"}, full}, medium},
-      {{morph_tool, {"in.xyz", "in.ply", "m.ply", "-frames", "2"}, full}, small},
-      {{texture_tool, {"in.ply", "kept.ply", "-size", "256"}, full}, small},
-      {{texture_tool, {"in.ply", "a.obj", "-size", "256"}, full}, small},
-      {{texture_tool, {"in.ply", "a.glb", "-size", "256"}, full}, small},
-      {{scan_tool, {"sphere", "kept.ply"}, full}, small}};
-  for (const auto& [row, bytes] : cases) {
-    SCOPED_TRACE(row.tool + " " + testing::PrintToString(row.arguments));
+  const std::string full = ": File too large";
+  const auto expect_full = [&](std::size_t bytes, const std::vector<Row>& rows) {
     RunOptions options;
     options.file_size_limit = bytes;
-    expectRefused(row.tool, row.arguments, failed, row.cause, options);
-  }
+    expectAllRefused(rows, failed, options);
+  };
+  // Room for no output; or for a mesh, but not for more.
+  expect_full(4000, {{"mesh|in.xyz|kept.ply", "cannot write 'kept.ply'" + full},
+                     {"texture|in.ply|a.obj|-size|256", full},
+                     {"texture|in.ply|a.glb|-size|256", full},
+                     {"scan|sphere|kept.ply", full}});
+  expect_full(15000, {{"remesh|in.xyz|kept.ply|-harmonics|c.json", full}});
+  expect_full(30000, {{"mesh|in.xyz|kept.ply|-sphere|s.stl", "cannot write 's.stl'" + full},
+                      {"mesh|in.xyz|kept.ply|-json|r.json|-method|paper|-tolerance|0",
+                       "cannot write 'r.json'" + full},
+                      {"remesh|in.xyz|a.tif|-side|65", full}});
 }
 
 TEST_F(BadInput, AFullStandardOutputIsAFailure) {
   RunOptions options;
   options.standard_output = "/dev/full";
-  for (const Row& row : std::vector<Row>{{mesh_tool, {"in.xyz", "out.ply", "-json", "-"}, ""},
-                                         {mesh_tool, {"in.xyz", "kept.ply"}, ""},
-                                         {mesh_tool, {"-h"}, ""},
-                                         {scan_tool, {"sphere", "out.pcd", "-points", "99"}, ""}}) {
-    SCOPED_TRACE(row.tool + " " + testing::PrintToString(row.arguments));
-    expectRefused(row.tool, row.arguments, failed, "standard output", options);
-  }
+  expectAllRefused({{"mesh|in.xyz|kept.ply", "standard output"},
+                    {"scan|sphere|out.pcd|-points|99", "standard output"}},
+                   failed, options);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -93,13 +94,19 @@ TEST_F(PartsOption, OneSphereAndOnePageAreThoseOfTheLargest) {
   EXPECT_EQ(mesh("s.ply").vertexCount(), 300U);
 }
 
-TEST_F(PartsOption, ToolsThatMakeOneSurfaceTakeTheLargestOrAll) {
-  for (const std::string program : {REMESH_TOOL, TEXTURE_TOOL}) {
-    expectSuccess(program, {"two.xyz", "out.ply", "-topology", "scan", "-json", "r.json"});
-    EXPECT_EQ(json::parse(content("r.json"))["vertices"], 300) << program;
-    run(program, {"two.xyz", "out.ply", "-topology", "sphere", "-json", "r.json"});
-    EXPECT_EQ(json::parse(content("r.json"))["vertices"], 500) << program;
+TEST_F(PartsOption, OthersThanTheLargestAreLeftOutInEveryTool) {
+  for (const Words& words : {Words{"largest"}, Words{"each", "-min-points", "201"}}) {
+    tool(tool_test::with({"two.xyz", "out.ply", "-json", "r.json", "-parts"}, words));
+    EXPECT_EQ(mesh("out.ply").points(), large);
+    EXPECT_EQ(json::parse(content("r.json"))["left_out"]["other_parts"].size(), 200U);
   }
+  // Tools that make one surface take the largest, or all.
+  for (const std::string program : {REMESH_TOOL, TEXTURE_TOOL})
+    for (const auto& [topology, points] : {std::pair("scan", 300), std::pair("sphere", 500)}) {
+      run(program, {"two.xyz", "out.ply", "-topology", topology, "-json", "r.json"});
+      EXPECT_EQ(json::parse(content("r.json"))["vertices"], points) << program;
+    }
+  EXPECT_EQ(run(REMESH_TOOL, {"two.xyz", "even.ply", "-parts", "each"}).exit_code, 2);
 }
 
 TEST_F(PartsOption, EightPartsShareOneTimeLimit) {
@@ -117,16 +124,6 @@ TEST_F(PartsOption, EightPartsShareOneTimeLimit) {
   EXPECT_EQ(mesh("out.ply").triangles.cols(), 8 * 196);
   for (const json& part : json::parse(content("report.json"))["parts"])
     EXPECT_EQ(part["is_out_of_time"], true);
-}
-
-TEST_F(PartsOption, OthersThanTheLargestAreLeftOutInEveryTool) {
-  for (const Words& words : {Words{"largest"}, Words{"each", "-min-points", "201"}}) {
-    tool(tool_test::with({"two.xyz", "out.ply", "-json", "report.json", "-parts"}, words));
-    EXPECT_EQ(mesh("out.ply").points(), large);
-    EXPECT_EQ(json::parse(content("report.json"))["left_out"]["other_parts"].size(), 200U);
-  }
-  expectSuccess(REMESH_TOOL, {"two.xyz", "even.ply", "-parts", "largest"});
-  EXPECT_EQ(run(REMESH_TOOL, {"two.xyz", "even.ply", "-parts", "each"}).exit_code, 2);
 }
 
 }  // namespace

@@ -231,6 +231,18 @@ bool isSphereWhenWelded(const TexturedFile& mesh) {
   return spherical_param::test::isSphereOverAll(triangles, static_cast<Index>(welded.size()));
 }
 
+/// The largest error of a colour where the image has a corner of a triangle.
+double worstColor(const TexturedFile& mesh, const Image& image) {
+  const Positions colors = colorsOf(mesh.points);
+  double worst = 0.0;
+  for (Eigen::Index t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Vector2d place = mesh.coordinates.col(mesh.coordinate_triangles(t));
+    const Eigen::Vector3d off = image.at(place) - colors.col(mesh.triangles(t));
+    worst = std::max(worst, off.cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
 void expectTextured(const TexturedFile& mesh, const Image& image, double largest_error) {
   EXPECT_TRUE(isSphereWhenWelded(mesh));
   ASSERT_EQ(mesh.triangles.cols(), mesh.coordinate_triangles.cols());
@@ -240,14 +252,7 @@ void expectTextured(const TexturedFile& mesh, const Image& image, double largest
   EXPECT_LE(mesh.coordinates.maxCoeff(), 1.0);
   // All points of the cloud are there, and the image has their colours.
   EXPECT_TRUE(tool_test::containsAll(mesh.points, cloud()));
-  const Positions colors = colorsOf(mesh.points);
-  double worst = 0.0;
-  for (Eigen::Index t = 0; t < mesh.triangles.size(); ++t) {
-    const Eigen::Vector2d place = mesh.coordinates.col(mesh.coordinate_triangles(t));
-    const Eigen::Vector3d off = image.at(place) - colors.col(mesh.triangles(t));
-    worst = std::max(worst, off.cwiseAbs().maxCoeff());
-  }
-  EXPECT_LE(worst, largest_error);
+  EXPECT_LE(worstColor(mesh, image), largest_error);
 }
 
 class TextureTool : public tool_test::ToolTest {
@@ -351,13 +356,7 @@ TEST_F(TextureTool, ASurfaceWithHandlesIsCutInTheImageAlone) {
   EXPECT_TRUE(topology.isSurface() && topology.closed);
   EXPECT_EQ(topology.genus, 1);
   EXPECT_EQ(mesh.points.leftCols(800), points);
-  const Image image = decode(content("out.png"));
-  const Positions colors = colorsOf(mesh.points);
-  for (Eigen::Index t = 0; t < mesh.triangles.size(); ++t) {
-    const Eigen::Vector2d place = mesh.coordinates.col(mesh.coordinate_triangles(t));
-    const Eigen::Vector3d off = image.at(place) - colors.col(mesh.triangles(t));
-    EXPECT_LE(off.cwiseAbs().maxCoeff(), 10.0);
-  }
+  EXPECT_LE(worstColor(mesh, decode(content("out.png"))), 10.0);
 }
 
 TEST_F(TextureTool, FilesMentionEachOtherByPathsFromWhereTheyAre) {

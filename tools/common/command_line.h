@@ -41,27 +41,20 @@ OptionInfo fileOption(const std::string& name, const std::string& help, std::str
 template <typename Field>
 OptionInfo numberOption(const std::string& name, const std::string& help, Field& field, double min,
                         double max) {
-  constexpr bool is_real = std::is_same_v<Field, double>;
+  using Value = typename decltype(std::optional(field))::value_type;
+  using Wide = std::conditional_t<std::is_same_v<Value, double>, double, std::int64_t>;
   OptionRow row = rowOf(name, help);
   row.is_number = true;
-  row.is_integer = !is_real;
+  row.is_integer = std::is_same_v<Wide, std::int64_t>;
   row.min = min;
   row.max = max;
-  const auto get = [&field]() -> OptionValue {
-    const std::optional value = field;
-    using Value = std::conditional_t<is_real, double, std::int64_t>;
-    return value ? OptionValue(static_cast<Value>(*value)) : OptionValue();
-  };
-  return optionOf(row, get, [&field](const OptionValue& value) {
-    using Value = typename decltype(std::optional(field))::value_type;
-    std::visit(
-        [&field](const auto& number) {
-          if constexpr (std::is_arithmetic_v<std::decay_t<decltype(number)>>) {
-            field = static_cast<Value>(number);
-          }
-        },
-        value);
-  });
+  return optionOf(
+      row,
+      [&field]() -> OptionValue {
+        const std::optional<Value> value = field;
+        return value ? OptionValue(static_cast<Wide>(*value)) : OptionValue();
+      },
+      [&field](const OptionValue& value) { field = static_cast<Value>(std::get<Wide>(value)); });
 }
 
 /// The values of an enumeration with the names that the user gives them.

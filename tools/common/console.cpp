@@ -10,14 +10,13 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 namespace spherical_param::tools {
 namespace {
 
 /// A run that is shorter needs no bar.
 constexpr std::chrono::milliseconds quiet_start{500};
-constexpr std::chrono::milliseconds redraw_interval{100};
+constexpr std::chrono::milliseconds redraw_interval{50};
 
 std::string padded(const std::string& label, std::size_t width = 20) {
   return label + std::string(label.size() < width ? width - label.size() : 1, ' ');
@@ -29,28 +28,10 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-Console::Console(Detail detail) : detail_(detail) {
-  if (detail == Detail::Nothing || isatty(STDOUT_FILENO) != 1) {
-    return;
-  }
-  drawer_ = std::thread([this] {
-    std::unique_lock<std::mutex> lock(mutex_);
-    for (auto pause = quiet_start; !ending_.wait_for(lock, pause, [this] { return is_ending_; });
-         pause = redraw_interval) {
-      draw();
-    }
-  });
-}
+Console::Console(Detail detail)
+    : detail_(detail), shows_bar_(detail != Detail::Nothing && isatty(STDOUT_FILENO) == 1) {}
 
 Console::~Console() {
-  if (drawer_.joinable()) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      is_ending_ = true;
-    }
-    ending_.notify_all();
-    drawer_.join();
-  }
   // An error message begins on a line of its own.
   clearBar();
   std::fflush(stdout);
@@ -92,15 +73,29 @@ void Console::entry(const std::string& label, const std::string& value) {
 }
 
 void Console::begin(const std::string& stage) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   stage_ = stage;
-  fraction_ = 0.0;
   begin_ = Clock::now();
+  drawn_ = {};
+  update(0.0);
 }
 
 void Console::update(double fraction) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  fraction_ = std::clamp(fraction, 0.0, 1.0);
+  constexpr double bar_width = 24.0;
+  const Clock::time_point now = Clock::now();
+  if (!shows_bar_ || now - start_ < quiet_start || now - drawn_ < redraw_interval) {
+    return;
+  }
+  drawn_ = now;
+  is_bar_drawn_ = true;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  std::string bar(static_cast<std::size_t>(fraction * bar_width), '#');
+  bar.resize(static_cast<std::size_t>(bar_width), '.');
+  std::array<char, 32> numbers;
+  std::snprintf(numbers.data(), numbers.size(), "] %3d %%  %.0f s",
+                static_cast<int>(fraction * 100.0), std::floor(secondsSince(start_)));
+  // \033[K clears the rest of the line, left over from a longer one.
+  print("\r  " + padded(stage_) + "[" + bar + numbers.data() + "\033[K");
+  std::fflush(stdout);
 }
 
 FileProgress Console::updates(double from, double to) {
@@ -114,22 +109,6 @@ std::function<bool(const Progress&)> Console::progress(double to) {
   };
 }
 
-void Console::draw() {
-  constexpr double bar_width = 24.0;
-  if (stage_.empty()) {
-    return;
-  }
-  is_bar_drawn_ = true;
-  std::string bar(static_cast<std::size_t>(fraction_ * bar_width), '#');
-  bar.resize(static_cast<std::size_t>(bar_width), '.');
-  std::array<char, 32> numbers;
-  std::snprintf(numbers.data(), numbers.size(), "] %3d %%  %.0f s",
-                static_cast<int>(fraction_ * 100.0), std::floor(secondsSince(start_)));
-  // \033[K clears the rest of the line, left over from a longer one.
-  print("\r  " + padded(stage_) + "[" + bar + numbers.data() + "\033[K");
-  std::fflush(stdout);
-}
-
 void Console::clearBar() {
   if (is_bar_drawn_) {
     print("\r\033[K");
@@ -138,8 +117,7 @@ void Console::clearBar() {
 }
 
 StageTime Console::end(const std::string& detail) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const StageTime stage{std::exchange(stage_, ""), secondsSince(begin_)};
+  const StageTime stage{stage_, secondsSince(begin_)};
   std::array<char, 32> time;
   std::snprintf(time.data(), time.size(), "%8.3f s", stage.seconds);
   clearBar();

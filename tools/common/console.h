@@ -5,11 +5,8 @@
 #include "spherical_param/result.h"
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -32,7 +29,7 @@ struct Summary {
 };
 
 /// The standard output of a tool: pairs of label and value, and stages of work with their time. On
-/// a terminal a stage is a progress bar, which a thread draws.
+/// a terminal a stage is a progress bar.
 class Console {
 public:
   explicit Console(Detail detail);
@@ -64,20 +61,15 @@ private:
   using Clock = std::chrono::steady_clock;
 
   void print(const std::string& text);
-  void draw();
   void clearBar();
 
   const Detail detail_;
+  const bool shows_bar_;
   const Clock::time_point start_ = Clock::now();
-
-  std::mutex mutex_;  ///< of all that follows
-  std::condition_variable ending_;
-  bool is_ending_ = false;
-  bool is_bar_drawn_ = false;
-  std::string stage_;  ///< empty between stages
-  double fraction_ = 0.0;
+  std::string stage_;
   Clock::time_point begin_;
-  std::thread drawer_;
+  Clock::time_point drawn_;  ///< of the bar
+  bool is_bar_drawn_ = false;
 };
 
 /// Prints text on the standard output and makes sure that it got there. \throw Failure.

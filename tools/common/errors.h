@@ -27,19 +27,15 @@ private:
   std::string remedy_;
 };
 
+template <ExitCode exit_code>
+struct ErrorOf : ToolError {
+  ErrorOf(const std::string& cause, std::string remedy)
+      : ToolError(exit_code, cause, std::move(remedy)) {}
+};
 /// The work could not be done.
-class Failure : public ToolError {
-public:
-  Failure(const std::string& cause, std::string remedy)
-      : ToolError(ExitCode::Failed, cause, std::move(remedy)) {}
-};
-
+using Failure = ErrorOf<ExitCode::Failed>;
 /// The command line makes no sense, whatever the files hold.
-class UsageError : public ToolError {
-public:
-  UsageError(const std::string& cause, std::string remedy)
-      : ToolError(ExitCode::Usage, cause, std::move(remedy)) {}
-};
+using UsageError = ErrorOf<ExitCode::Usage>;
 
 /// A message of the library, "function: cause; remedy" or "cause; remedy", for the user of a tool,
 /// who does not know the functions.

@@ -33,26 +33,14 @@ double squaredDistance(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                    squaredDistanceFromSegment(point, c, a)});
 }
 
-/// The triangles at each vertex, one vertex after the other.
-struct Stars {
-  std::vector<std::size_t> offsets;
-  std::vector<Index> triangles;
-
-  Stars(const Triangles& mesh, Eigen::Index vertices)
-      : offsets(static_cast<std::size_t>(vertices) + 1, 0),
-        triangles(static_cast<std::size_t>(mesh.size())) {
-    for (Eigen::Index i = 0; i < mesh.size(); ++i) {
-      ++offsets[static_cast<std::size_t>(mesh(i)) + 1];
-    }
-    for (std::size_t v = 1; v < offsets.size(); ++v) {
-      offsets[v] += offsets[v - 1];
-    }
-    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-    for (Eigen::Index i = 0; i < mesh.size(); ++i) {
-      triangles[next[static_cast<std::size_t>(mesh(i))]++] = static_cast<Index>(i / 3);
-    }
+/// The triangles at each vertex.
+std::vector<std::vector<Index>> trianglesAt(const Triangles& triangles, Eigen::Index vertices) {
+  std::vector<std::vector<Index>> stars(static_cast<std::size_t>(vertices));
+  for (Eigen::Index i = 0; i < triangles.size(); ++i) {
+    stars[static_cast<std::size_t>(triangles(i))].push_back(static_cast<Index>(i / 3));
   }
-};
+  return stars;
+}
 
 }  // namespace
 
@@ -60,7 +48,7 @@ DistanceStatistics distanceFromMesh(const Positions& points, const Positions& di
                                     const SphereSurface& mesh) {
   const Triangles& triangles = mesh.triangles();
   const Positions& corners = mesh.points();
-  const Stars stars(triangles, corners.cols());
+  const std::vector<std::vector<Index>> stars = trianglesAt(triangles, corners.cols());
   const std::vector<SphereLocation> locations = mesh.evaluate(directions).locations;
   DistanceStatistics distances;
   double sum = 0.0;
@@ -77,12 +65,11 @@ DistanceStatistics distanceFromMesh(const Positions& points, const Positions& di
       came_nearer = false;
       const Eigen::Matrix<Index, 3, 1> center = triangles.col(nearest);
       for (const Index vertex : center) {
-        const auto v = static_cast<std::size_t>(vertex);
-        for (std::size_t k = stars.offsets[v]; k < stars.offsets[v + 1]; ++k) {
-          const double distance = from_triangle(stars.triangles[k]);
+        for (const Index triangle : stars[static_cast<std::size_t>(vertex)]) {
+          const double distance = from_triangle(triangle);
           if (distance < least) {
             least = distance;
-            nearest = stars.triangles[k];
+            nearest = triangle;
             came_nearer = true;
           }
         }

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t buffer_size = std::size_t{1} << 20;
-
 /// The temporary files there are. Files are made, renamed and removed under the lock only.
 struct Registry {
   std::mutex mutex;
@@ -68,6 +66,8 @@ bool isRegularOrAbsent(const std::string& target) {
   return stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode);
 }
 
+constexpr const char* another_place = "choose a place that exists and that you may write to";
+
 [[noreturn]] void failPath(const std::string& path, const std::string& reason,
                            const std::string& remedy) {
   throw Failure("cannot write " + inQuotes(path) + ": " + reason, remedy);
@@ -76,7 +76,6 @@ bool isRegularOrAbsent(const std::string& target) {
 }  // namespace
 
 void checkOutputPath(const std::string& path) {
-  const std::string another_place = "choose a place that exists and that you may write to";
   struct stat status {};
   const std::string target = resolveLinks(path);
   if (stat(target.c_str(), &status) == 0) {
@@ -93,14 +92,10 @@ void checkOutputPath(const std::string& path) {
     failPath(path, systemMessage(errno), another_place);
   }
   const std::string directory = directoryOf(target);
-  if (stat(directory.c_str(), &status) != 0) {
-    failPath(path, "missing directory " + inQuotes(directory), another_place);
-  }
-  if (!S_ISDIR(status.st_mode)) {
-    failPath(path, inQuotes(directory) + " is not a directory", another_place);
-  }
   if (access(directory.c_str(), W_OK | X_OK) != 0) {
-    failPath(path, systemMessage(errno), another_place);
+    failPath(path,
+             errno == ENOENT ? "missing directory " + inQuotes(directory) : systemMessage(errno),
+             another_place);
   }
 }
 
@@ -137,56 +132,41 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(resolveLi
 }
 
 OutputFile::~OutputFile() {
-  discard();
+  if (descriptor_ >= 0) {
+    close(descriptor_);
+  }
+  if (!temporary_.empty()) {
+    const std::lock_guard<std::mutex> lock(registry().mutex);
+    unlink(temporary_.c_str());
+    registry().paths.erase(temporary_);
+  }
 }
 
 void OutputFile::write(std::string_view bytes) {
-  // Large blocks go straight on.
-  if (bytes.size() >= buffer_size) {
-    flush();
-    store(bytes);
-    return;
-  }
-  buffer_.append(bytes);
-  if (buffer_.size() >= buffer_size) {
-    flush();
-  }
-}
-
-void OutputFile::flush() {
-  store(buffer_);
-  buffer_.clear();
-}
-
-void OutputFile::store(std::string_view bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) {
       continue;
     }
     if (count <= 0) {
       fail("write", count < 0 ? errno : ENOSPC);
     }
-    done += static_cast<std::size_t>(count);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    written_ += static_cast<std::size_t>(count);
   }
-  written_ += done;
 }
 
 void OutputFile::finish() {
   if (descriptor_ < 0) {
     return;
   }
-  flush();
   struct stat status {};
   const bool known = fstat(descriptor_, &status) == 0;
   if (!temporary_.empty() && fchmod(descriptor_, wantedMode(target_)) != 0) {
     fail("set the rights of", errno);
   }
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
   // Network file systems report a full disk only here.
-  if (close(descriptor) != 0) {
+  if (close(std::exchange(descriptor_, -1)) != 0) {
     fail("write", errno);
   }
   if (!temporary_.empty() && (!known || static_cast<std::size_t>(status.st_size) != written_)) {
@@ -207,24 +187,10 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
-void OutputFile::discard() {
-  if (descriptor_ >= 0) {
-    close(descriptor_);
-    descriptor_ = -1;
-  }
-  if (!temporary_.empty()) {
-    const std::lock_guard<std::mutex> lock(registry().mutex);
-    unlink(temporary_.c_str());
-    registry().paths.erase(temporary_);
-    temporary_.clear();
-  }
-}
-
 void OutputFile::fail(const std::string& action, int error_number) const {
   const bool full = error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG;
   throw Failure("cannot " + action + " " + inQuotes(path_) + ": " + systemMessage(error_number),
-                full ? "free space there or write to another place"
-                     : "choose a place that exists and that you may write to");
+                full ? "free space there or write to another place" : another_place);
 }
 
 void removeTemporaryFiles(const std::function<void()>& afterwards) {

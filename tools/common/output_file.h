@@ -28,7 +28,8 @@ public:
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Adds bytes. \throw Failure if they cannot be stored, e.g. for a full disk.
+  /// Adds bytes, better many at a time. \throw Failure if they cannot be stored, e.g. for a full
+  /// disk.
   void write(std::string_view bytes);
   /// Flushes and closes the file and checks its size. \throw Failure.
   void finish();
@@ -36,15 +37,11 @@ public:
   void commit();
 
 private:
-  void flush();
-  void store(std::string_view bytes);
-  void discard();
   [[noreturn]] void fail(const std::string& action, int error_number) const;
 
   std::string path_;       ///< as the user knows it
   std::string target_;     ///< behind symbolic links
   std::string temporary_;  ///< empty: written directly
-  std::string buffer_;
   std::size_t written_ = 0;
   int descriptor_ = -1;
 };

@@ -23,11 +23,6 @@ void addToJson(const MapDistortion& distortion, Json& json) {
   json["stretch_efficiency"] = distortion.stretch_efficiency;
 }
 
-std::string listed(const DistortionStatistics& values) {
-  return formatted(values.mean, 4) + ", " + formatted(values.p95, 4) + ", " +
-         formatted(values.max, 4);
-}
-
 /// \param vertex_of of each vertex of the cut mesh.
 std::vector<Color> vertexColors(const CloudReconstruction& cloud,
                                 const std::vector<Index>& vertex_of) {
@@ -155,27 +150,6 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["embedding_distortion"] = nullptr;
   if (mapped.cloud.surface().sphere.cols() > 0) {
     addToJson(mapped.map.before, json["embedding_distortion"]);
-  }
-}
-
-void printMap(const MappedCloud& mapped, Console& console) {
-  const Surface& surface = mapped.cloud.surface();
-  const MapDistortion& now = mapped.map.distortion;
-  const MapDistortion& before = mapped.map.before;
-  const auto with_embedding = [&](const std::string& value, const char* mark) {
-    return surface.sphere.cols() > 0 ? mark + ("embedding: " + value) : "";
-  };
-  console.entry("input points", std::to_string(mapped.cloud.data->points.size()));
-  console.entry("vertices", std::to_string(surface.input_of_vertex.size()));
-  console.entry("mesh", std::to_string(mapped.mesh.triangles.cols()) + " triangles, " +
-                            counted(surface.self_intersections.size(), "self-intersection"));
-  const std::string flipped = with_embedding(std::to_string(before.flipped_triangles), " (");
-  console.entry("flipped on sphere",
-                std::to_string(now.flipped_triangles) + (flipped.empty() ? "" : flipped + ")"));
-  for (const auto& [label, of] : {std::pair("angle distortion", &MapDistortion::angle),
-                                  std::pair("area distortion", &MapDistortion::area)}) {
-    console.entry(label, listed(now.*of) + " (mean, 95 %, max" +
-                             with_embedding(listed(before.*of), "; ") + ")");
   }
 }
 

@@ -67,7 +67,4 @@ std::vector<Finding> findingsOf(const MappedCloud& mapped);
 /// embedding as `embedding_distortion`, null without one.
 void addMapToJson(const MappedCloud& mapped, Json& json);
 
-/// Prints the same.
-void printMap(const MappedCloud& mapped, Console& console);
-
 }  // namespace spherical_param::tools

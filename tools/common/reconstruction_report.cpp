@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -110,14 +111,16 @@ private:
 
 /// A name or value as people read it.
 std::string inWords(const Json& value) {
-  if (value.is_array()) {
+  if (value.is_structured()) {
     std::string text;
-    for (const Json& item : value) {
-      text += (text.empty() ? "" : " ") + inWords(item);
+    for (const auto& [name, item] : value.items()) {
+      text += text.empty() ? "" : value.is_object() ? ", " : " ";
+      text += (value.is_object() ? inWords(name) + " " : "") + inWords(item);
     }
     return text;
   }
   std::string text = value.is_string()         ? value.get<std::string>()
+                     : value.is_boolean()      ? (value.get<bool>() ? "yes" : "no")
                      : value.is_number_float() ? formatted(value.get<double>(), 6)
                                                : value.dump();
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -170,14 +173,23 @@ Json toJson(const std::vector<Finding>& findings) {
   return Writer().toJson({}, findings);
 }
 
-void printTables(const Surface& surface, Console& console) {
-  const Json json = toJson(surface);
-  printTable(json["embedding"]["levels"], console);
-  for (const auto& [name, value] : json["measures"].items()) {
-    if (!value.is_null()) {
+void printFigures(const Json& report, Console& console) {
+  const std::set<std::string> others = {"version", "input",  "inputs", "output",
+                                        "options", "stages", "files",  "findings"};
+  for (const auto& [name, value] : report.items()) {
+    if (value.contains("stages")) {
+      console.heading(name);
+      printFigures(value, console);
+    } else if (!value.is_null() && others.count(name) == 0) {
       console.entry(inWords(name), inWords(value));
     }
   }
+}
+
+void printTables(const Surface& surface, Console& console) {
+  const Json json = toJson(surface);
+  printTable(json["embedding"]["levels"], console);
+  printFigures(json["measures"], console);
 }
 
 }  // namespace spherical_param::tools

@@ -16,6 +16,9 @@ Json toJson(const Surface& surface);
 Json toJson(const LeftOut& left_out);
 Json toJson(const std::vector<Finding>& findings);
 
+/// Prints the figures of a report, by their names: all but files, options, stages and findings.
+void printFigures(const Json& report, Console& console);
+
 /// Prints the levels of the embedding, the size of the mesh and its solid.
 void printTables(const Surface& surface, Console& console);
 

@@ -82,7 +82,7 @@ TEST(Numbers, AreTheWholeTextAndNothingElse) {
   EXPECT_EQ(toInteger("99999999999999999999"), std::nullopt);
 }
 
-TEST(ToolOptions, TakeWhatIsInTheirRange) {
+TEST(Numbers, OfOptionsAreInTheirRange) {
   int integer = 5;
   double real = 0.5;
   Encoding encoding = Encoding::Binary;

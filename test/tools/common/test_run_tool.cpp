@@ -16,7 +16,8 @@ namespace {
 [[noreturn]] void runAndExit(const std::function<void()>& work) {
   std::string name = "tool";
   std::vector<char*> words = {name.data(), nullptr};
-  std::exit(runTool("tool", 1, words.data(), [&](const std::vector<std::string>&) { work(); }));
+  std::exit(
+      runTool({"tool", "", "", {}}, 1, words.data(), {}, [&](const CommandLine&) { work(); }));
 }
 
 TEST(RunToolDeathTest, WhateverIsThrownIsReportedAndFails) {
