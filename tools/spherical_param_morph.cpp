@@ -259,17 +259,15 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
   run.console.begin("write");
   morph.offset = settings.report.offsetOf(settings.format, *clouds[0].cloud.data);
   PointData vertices;
-  vertices.colors.resize(morph.hasColors() ? morph.vertexCount() : 0);
   vertices.has_alpha =
       morph.hasColors() && (clouds[0].cloud.data->has_alpha || clouds[1].cloud.data->has_alpha);
   for (std::size_t frame = 0; frame < settings.frames; ++frame) {
     const double t = timeOf(settings, frame);
     vertices.points = toPoints(positionsOf(settings, morph, frame));
-    for (std::size_t i = 0; i < vertices.colors.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      const Eigen::Vector4d color =
-          (1.0 - t) * morph.colors[0].col(column) + t * morph.colors[1].col(column);
-      vertices.colors[i] = truncated(color + Eigen::Vector4d::Constant(0.5));
+    if (morph.hasColors()) {
+      // To the nearest.
+      vertices.colors =
+          truncated((((1.0 - t) * morph.colors[0] + t * morph.colors[1]).array() + 0.5).matrix());
     }
     MeshView mesh(vertices, morph.result.triangles);
     mesh.shiftBy(morph.offset);

@@ -17,7 +17,6 @@
 #include "spherical_param/version.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -84,18 +83,14 @@ struct Settings {
   int threads() const { return product.map.threads; }
 };
 
-OptionInfo pointsOption(Settings& settings) {
-  return numberOption(
-      "points",
-      "number of points; for meshes the nearest possible; unset: as the mesh of the cloud",
-      settings.points, 4, settings.makesCloud() ? most_even_points : most_vertices);
-}
-
 OptionTable ownOptions(Settings& settings) {
   return {usedIf([&] { return !settings.reads_image && !settings.writes_image; },
                  choiceOption("grid", "of the points: two of meshes; even: of a cloud",
                               settings.sampling, sampling_names)),
-          pointsOption(settings),
+          numberOption(
+              "points",
+              "number of points; for meshes the nearest possible; unset: as the mesh of the cloud",
+              settings.points, 4, settings.makesCloud() ? most_even_points : most_vertices),
           numberOption("side",
                        "pixels along the sides of a geometry image, odd; unset: as -points says",
                        settings.side, 3, longest_side),
@@ -175,7 +170,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
 
 void parse(const CommandLine& command_line, Settings& settings) {
   command_line.apply(ownOptions(settings));
-  command_line.apply({pointsOption(settings)});  // fewer of a cloud
+  command_line.apply(ownOptions(settings));  // a cloud has fewer points
   command_line.apply(outputOptions(settings.report));
   parseFiles(command_line, settings);
   if (settings.side && *settings.side % 2 == 0) {
@@ -205,7 +200,8 @@ struct Output {
   std::size_t flipped_edges = 0;  ///< after it
   MeshTopology topology;
   MeshMeasures measures;
-  std::vector<std::array<Index, 2>> self_intersections;
+  std::size_t self_intersections = 0;  ///< pairs of triangles
+  std::size_t intersecting_triangles = 0;
   std::optional<DistanceStatistics> distance;  ///< of the vertices of the cloud's mesh
   std::vector<StageTime> stages;
   Point offset{};  ///< of the coordinates that are written
@@ -216,15 +212,6 @@ struct Output {
   std::size_t pointCount() const { return static_cast<std::size_t>(mesh.points.cols()); }
   bool isCloud() const { return mesh.triangles.cols() == 0; }
 };
-
-/// Rounded to the nearest.
-std::vector<Color> interpolatedColors(const MappedCloud& mapped,
-                                      const std::vector<SphereLocation>& places) {
-  const Eigen::Matrix4Xd raised = colorsAt(mapped, places, 0.5);
-  std::vector<Color> colors(static_cast<std::size_t>(raised.cols()));
-  std::transform(raised.colwise().begin(), raised.colwise().end(), colors.begin(), truncated);
-  return colors;
-}
 
 GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurface& surface) {
   const SphereGrid kind =
@@ -246,7 +233,7 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
         sampleEvenly(surface, wanted, settings.product.reconstruction.options.seed);
     output.mesh.points = std::move(points.points);
     output.mesh.normals = std::move(points.normals);
-    output.colors = interpolatedColors(mapped, points.locations);
+    output.colors = truncated(colorsAt(mapped, points.locations, 0.5));
   } else {
     const GridSphere grid = gridOf(settings, wanted, surface);
     output.frequency = grid.frequency;
@@ -269,7 +256,9 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
     Execution execution;
     execution.threads = settings.threads();
     execution.progress = console.progress(0.5);
-    output.self_intersections = findSelfIntersections(mesh.points, mesh.triangles, execution);
+    const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
+    output.self_intersections = pairs.size();
+    output.intersecting_triangles = countTriangles(pairs);
     if (!settings.reads_image && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
@@ -309,7 +298,8 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
   }
   if (!output.isCloud() && !mapped.colors.empty()) {
-    output.colors = interpolatedColors(mapped, surface.evaluate(output.mesh.directions).locations);
+    output.colors =
+        truncated(colorsAt(mapped, surface.evaluate(output.mesh.directions).locations, 0.5));
   }
   output.mesh.points = asWritten(output.mesh.points);
   if (settings.writes_image) {
@@ -331,7 +321,7 @@ void makeFromImage(const Settings& settings, Output& output, Console& console) {
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,
                                 const Output& output) {
   std::vector<Finding> findings = findingsOf(mapped);
-  if (!output.self_intersections.empty()) {
+  if (output.self_intersections > 0) {
     findings.push_back({"the output has self-intersections" +
                             std::string(settings.reads_image || settings.series
                                             ? ""
@@ -341,21 +331,17 @@ std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& map
   return findings;
 }
 
-std::size_t intersectingTriangles(const Output& output) {
-  return countTriangles(output.self_intersections);
-}
-
 /// Whether the output is sound, and what the mesh of the cloud leaves open, fills, cuts or joins.
 std::string verdictOf(const Output& output, const MappedCloud& mapped) {
   if (output.isCloud()) {
     return "Points spread evenly over the surface.";
   }
-  if (output.self_intersections.empty()) {
+  if (output.self_intersections == 0) {
     const bool is_of_sound_mesh =
         !mapped.cloud.result.surfaces.empty() && mapped.cloud.surface().intersecting_triangles == 0;
     return is_of_sound_mesh ? mapped.cloud.surface().verdict : "A sound mesh.";
   }
-  return "The mesh has faults: " + grouped(intersectingTriangles(output)) + " of " +
+  return "The mesh has faults: " + grouped(output.intersecting_triangles) + " of " +
          counted(static_cast<std::size_t>(output.mesh.triangles.cols()), "triangle") +
          " intersect.";
 }
@@ -415,7 +401,7 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["genus"] = output.topology.genus ? Json(*output.topology.genus) : Json(nullptr);
   json["volume"] = unless(is_cloud, output.measures.volume);
   json["area"] = unless(is_cloud, output.measures.area);
-  json["self_intersections"] = unless(is_cloud, output.self_intersections.size());
+  json["self_intersections"] = unless(is_cloud, output.self_intersections);
   const auto& untangling = output.untangling;
   json["untangling"] = !untangling ? Json()
                                    : Json({{"self_intersections_before", untangling->before},
@@ -502,7 +488,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   printFigures(json, run.console);
   run.publish([&] { return json; }, summaryOf(settings, mapped, output));
   run.add("", findingsOf(settings, mapped, output));
-  run.conclude(100 * intersectingTriangles(output) <=
+  run.conclude(100 * output.intersecting_triangles <=
                static_cast<std::size_t>(output.mesh.triangles.cols()));
 }
 

@@ -101,11 +101,12 @@ TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
 TEST_F(EveryTool, ReportIsAloneOnStandardOutputAndHasEveryOption) {
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const json report =
-        reportOf(tool.program, with(tool.arguments, {"-seed", "7", "-starts", "9"}));
+    const json report = reportOf(
+        tool.program, with(tool.arguments, {"-seed", "7", "-starts", "9", "-threads", "2"}));
     ASSERT_TRUE(report.is_object());
     EXPECT_EQ(report["options"]["seed"], 7);
     EXPECT_EQ(report["options"]["starts"], 9);
+    EXPECT_EQ(report["options"]["threads"], 2);
     EXPECT_TRUE(report["options"]["tolerance"].is_null());
     for (const std::string& option : optionsOf(tool))
       EXPECT_TRUE(report["options"].contains(option)) << option;

@@ -122,11 +122,11 @@ Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLoc
   return colors;
 }
 
-Color truncated(const Eigen::Vector4d& color) {
-  Color bytes{};
-  for (std::size_t channel = 0; channel < 4; ++channel) {
-    const double value = color[static_cast<Eigen::Index>(channel)];
-    bytes[channel] = static_cast<std::uint8_t>(std::min(std::max(value, 0.0), 255.0));
+std::vector<Color> truncated(const Eigen::Matrix4Xd& colors) {
+  std::vector<Color> bytes(static_cast<std::size_t>(colors.cols()));
+  for (std::size_t i = 0; i < 4 * bytes.size(); ++i) {
+    bytes[i / 4][i % 4] =
+        static_cast<std::uint8_t>(std::clamp(colors(static_cast<Eigen::Index>(i)), 0.0, 255.0));
   }
   return bytes;
 }

@@ -55,8 +55,8 @@ extern const Names<SurfaceFit> fit_names;
 /// empty without colours.
 Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLocation>& places,
                           double start);
-/// A colour without the fractions of its channels.
-Color truncated(const Eigen::Vector4d& color);
+/// Colours without the fractions of their channels.
+std::vector<Color> truncated(const Eigen::Matrix4Xd& colors);
 
 /// What the library found, with options that tools of one surface take.
 std::vector<Finding> findingsOf(const MappedCloud& mapped);

@@ -15,7 +15,7 @@ namespace {
 
 /// The octahedron |x| + |y| + |z| = 1 in many triangles.
 SphereSurface octahedron() {
-  const GridSphere grid = makeGridSphere(SphereGrid::Octahedral, 6);
+  const GridSphere grid = makeGridSphere(SphereGrid::Octahedral, 16);
   const Positions points =
       grid.directions.array().rowwise() / grid.directions.cwiseAbs().colwise().sum().array();
   return {points, grid.triangles, grid.directions, {SurfaceFit::Linear, 1}};
@@ -31,7 +31,7 @@ TEST(MeshDistance, IsThatOfTheNearestTriangleAlsoFromOneBeside) {
       {{0.3, -0.3, 0.2}, 0.2 / std::sqrt(3.0)},
       {{0.5, 0.25, -0.25}, 0.0}};
   for (const auto& [point, distance] : points)
-    for (const double turn : {0.0, 0.3}) {  // [rad], more than a triangle
+    for (const double turn : {0.0, 0.3}) {  // [rad], more than three triangles
       const Eigen::Vector3d direction =
           Eigen::AngleAxisd(turn, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()) *
           point.normalized();
