@@ -14,37 +14,6 @@
 #include <utility>
 
 namespace tool_test {
-namespace {
-
-/// The values of a PLY file of little-endian bytes behind its header.
-class PlyBody {
-public:
-  PlyBody(const std::string& bytes, std::size_t offset) : bytes_(bytes), offset_(offset) {}
-
-  double next(const std::string& type) {
-    if (type == "float")
-      return static_cast<double>(take<float>());
-    if (type == "double")
-      return take<double>();
-    return type == "uchar" ? take<std::uint8_t>() : take<std::int32_t>();
-  }
-  bool isAtEnd() const { return offset_ == bytes_.size(); }
-
-private:
-  template <typename Value>
-  Value take() {
-    Value value{};
-    if (offset_ + sizeof value <= bytes_.size())
-      std::memcpy(&value, bytes_.data() + offset_, sizeof value);
-    offset_ += sizeof value;
-    return value;
-  }
-
-  const std::string& bytes_;
-  std::size_t offset_;
-};
-
-}  // namespace
 
 Positions MeshFile::columns(const std::string& a, const std::string& b,
                             const std::string& c) const {
@@ -81,17 +50,29 @@ MeshFile parsePly(const std::string& bytes) {
   }
   EXPECT_EQ(line, "end_header");
   EXPECT_NE(bytes.find("\nformat binary_little_endian "), std::string::npos);
-  PlyBody body(bytes, static_cast<std::size_t>(header.tellg()));
+  auto offset = static_cast<std::size_t>(header.tellg());
+  const auto next = [&](const std::string& type) {
+    const auto take = [&](auto value) {
+      if (offset + sizeof value <= bytes.size())
+        std::memcpy(&value, bytes.data() + offset, sizeof value);
+      offset += sizeof value;
+      return static_cast<double>(value);
+    };
+    return type == "float"    ? take(float{})
+           : type == "double" ? take(double{})
+           : type == "uchar"  ? take(std::uint8_t{})
+                              : take(std::int32_t{});
+  };
   for (std::size_t i = 0; i < vertices; ++i)
     for (const auto& [type, name] : columns)
-      mesh.properties[name].push_back(body.next(type));
+      mesh.properties[name].push_back(next(type));
   mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles));
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    EXPECT_EQ(body.next("uchar"), 3.0);
+    EXPECT_EQ(next("uchar"), 3.0);
     for (int k = 0; k < 3; ++k)
-      mesh.triangles(k, t) = static_cast<spherical_param::Index>(body.next("int"));
+      mesh.triangles(k, t) = static_cast<spherical_param::Index>(next("int"));
   }
-  EXPECT_TRUE(body.isAtEnd());
+  EXPECT_EQ(offset, bytes.size());
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -98,14 +99,11 @@ TEST_F(GeometryImageFile, IsATiffFileOfThreeFloatsAPixel) {
   const GeometryImage image = makeImage(33);
   const Tiff tiff = written(image);
   EXPECT_EQ(tiff.bytes().substr(0, 4), std::string("II*\0", 4));
-  EXPECT_EQ(tiff.values(256), Values{33});
-  EXPECT_EQ(tiff.values(257), Values{33});
-  EXPECT_EQ(tiff.values(258), (Values{32, 32, 32}));
-  EXPECT_EQ(tiff.values(259), Values{1});
-  EXPECT_EQ(tiff.values(277), Values{3});
-  EXPECT_EQ(tiff.values(284), Values{1});
-  EXPECT_EQ(tiff.values(339), (Values{3, 3, 3}));
-  ASSERT_EQ(tiff.values(279), Values{12 * 33 * 33});
+  const std::map<std::uint32_t, Values> entries = {
+      {256, {33}}, {257, {33}}, {258, {32, 32, 32}}, {259, {1}},
+      {277, {3}},  {284, {1}},  {339, {3, 3, 3}},    {279, {12 * 33 * 33}}};
+  for (const auto& [tag, values] : entries)
+    EXPECT_EQ(tiff.values(tag), values) << tag;
   for (Eigen::Index i = 0; i < image.positions.size(); ++i) {
     const std::uint32_t bits =
         tiff.integer(tiff.values(273).front() + 4 * static_cast<std::size_t>(i), 4);
