@@ -12,21 +12,9 @@ namespace spherical_param::tools {
 namespace {
 
 bool isUsable(const FormatRow& row, FileUse use) {
-  switch (use) {
-  case FileUse::ReadCloud:
-    return row.read_cloud != nullptr;
-  case FileUse::WriteCloud:
-    return row.write_cloud != nullptr;
-  case FileUse::WriteMesh:
-    return row.write_mesh != nullptr;
-  }
-  return false;
-}
-
-std::string purposeOf(FileUse use) {
-  return use == FileUse::ReadCloud    ? "points are read from"
-         : use == FileUse::WriteCloud ? "points are written to"
-                                      : "meshes are written to";
+  return use == FileUse::ReadCloud    ? row.read_cloud != nullptr
+         : use == FileUse::WriteCloud ? row.write_cloud != nullptr
+                                      : row.write_mesh != nullptr;
 }
 
 /// A format that is not read, by its extension and perhaps how its files begin.
@@ -132,7 +120,10 @@ FileFormat requireFormat(const std::string& path, FileUse use, const std::string
   if (format != nullptr && isUsable(*format, use)) {
     return format;
   }
-  throw UsageError(inQuotes(path) + " has an extension that no " + purposeOf(use),
+  throw UsageError(inQuotes(path) + " has an extension that no " +
+                       (use == FileUse::ReadCloud    ? "points are read from"
+                        : use == FileUse::WriteCloud ? "points are written to"
+                                                     : "meshes are written to"),
                    "use one of " + extensionsFor(use) + others);
 }
 

@@ -1,7 +1,7 @@
 #include "common/mesh_writer.h"
 
-#include "common/console.h"
 #include "common/record_writer.h"
+#include "common/text.h"
 
 #include <Eigen/Geometry>
 

@@ -114,8 +114,10 @@ std::string inWords(const Json& value) {
   if (value.is_structured()) {
     std::string text;
     for (const auto& [name, item] : value.items()) {
-      text += text.empty() ? "" : value.is_object() ? ", " : " ";
-      text += (value.is_object() ? inWords(name) + " " : "") + inWords(item);
+      if (!item.is_null()) {
+        text += text.empty() ? "" : value.is_object() ? ", " : " ";
+        text += (value.is_object() ? inWords(name) + " " : "") + inWords(item);
+      }
     }
     return text;
   }

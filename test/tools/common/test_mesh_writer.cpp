@@ -51,15 +51,15 @@ double rounded(double value) {
   return std::ldexp(std::round(std::ldexp(value, 22)), -22);
 }
 
-/// Points with coordinates that need all digits of a float, or of a double where they are shifted.
+/// Points with coordinates that need all digits of a float, or of a double where x and y are
+/// shifted.
 TriangleMesh makeMesh(std::size_t n, double shift = 0.0) {
   TriangleMesh mesh;
   PointData& vertices = mesh.vertices;
   for (std::size_t i = 0; i < n; ++i) {
     const auto t = static_cast<double>(i);
     vertices.points.push_back({shift + rounded(std::sin(t) / 3.0),
-                               shift + rounded(std::cos(0.7 * t) / 7.0),
-                               shift + rounded(1e-5 * t)});
+                               shift + rounded(std::cos(0.7 * t) / 7.0), rounded(1e-5 * t)});
     vertices.normals.push_back(toFloat({std::cos(t), 0.0, std::sin(t)}));
     vertices.colors.push_back({static_cast<std::uint8_t>(i % 256),
                                static_cast<std::uint8_t>(7 * i % 256),
