@@ -27,24 +27,22 @@ const std::vector<Shape>& allShapes();
 
 inline constexpr std::size_t kMaxScanPoints = 10'000'000;
 
-/// What to scan, and how.
 struct ScanOptions {
   std::string shape = "head";  ///< name of a shape
-  std::size_t points = 5000;   ///< number of points; 4 ... kMaxScanPoints
+  std::size_t points = 5000;   ///< 4 ... kMaxScanPoints
   /// Half the width of the uniform noise along the normal, relative to a point's mean distance to
-  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100, 0 = points on the surface.
+  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100.
   double noise = 0.0;
-  std::uint64_t seed = 1;  ///< any value; the same seed gives the same scan
+  std::uint64_t seed = 1;
 };
 
-/// A generated scan.
 struct Scan {
   Positions points;   ///< 3 x n, column i = point i; no two are equal, not even as float
-  Positions normals;  ///< 3 x n, unit, outward: normal of the surface where point i was taken
+  Positions normals;  ///< 3 x n, unit, outward, without noise
 };
 
-/// Samples a shape: points spread evenly over the surface with random (blue noise) placement. Scans
-/// that differ in their noise only move the same points. \throw InvalidInput. Cost: O(n log n).
+/// Points spread evenly over a shape, at random (blue noise). Scans that differ in their noise only
+/// move the same points. \throw InvalidInput
 Scan generateScan(const ScanOptions& options);
 
 /// The surface a scan is taken from.
@@ -54,8 +52,7 @@ struct TruthMesh {
 };
 
 /// Triangulates a shape, with its handles, pieces and openings. With 256 cells, the mesh is
-/// manifold and oriented, with a vertex about every 1/200 unit. \throw InvalidInput if there is no
-/// such shape.
+/// manifold and oriented, with a vertex about every 1/200 unit. \throw InvalidInput
 ///
 /// \param cells of a lattice along each axis: 128 or 256.
 TruthMesh referenceMesh(const std::string& shape, int cells = 256);

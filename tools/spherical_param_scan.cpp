@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
+#include <deque>
+#include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -51,15 +53,9 @@ OptionTable optionsOf(Settings& settings) {
           flagOption("list", "list the shapes and presets", settings.list)};
 }
 
-struct Preset {
-  std::string name;   ///< of the paper's scan, lower case
-  std::string shape;  ///< stands for it
-  std::size_t points = 0;
-};
-
-/// Table 1 of the paper.
-const std::vector<Preset> presets = {
-    {"tweety", "bird", 19818}, {"max", "head", 52809}, {"igea", "head", 134345}};
+/// Of the paper's scans: the shape that stands for each, and its points in Table 1.
+const std::map<std::string, std::pair<std::string, std::size_t>> presets = {
+    {"tweety", {"bird", 19818}}, {"max", {"head", 52809}}, {"igea", {"head", 134345}}};
 
 std::string listText() {
   const auto line = [](const std::string& name, const std::string& text) {
@@ -69,9 +65,9 @@ std::string listText() {
   for (const Shape& shape : allShapes())
     text += line(shape.name, shape.description);
   text += "Presets:\n";
-  for (const Preset& preset : presets)
-    text += line(preset.name, "the shape " + preset.shape + " in place of the paper's scan (" +
-                                  std::to_string(preset.points) + " points)");
+  for (const auto& [name, preset] : presets)
+    text += line(name, "the shape " + preset.first + " in place of the paper's scan (" +
+                           std::to_string(preset.second) + " points)");
   return text;
 }
 
@@ -89,12 +85,8 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
 void parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
   ScanOptions& scan = settings.scan;
   scan.shape = lowerCase(name);
-  for (const Preset& preset : presets)
-    if (preset.name == scan.shape) {
-      scan.shape = preset.shape;
-      scan.points = preset.points;
-      break;
-    }
+  if (const auto preset = presets.find(scan.shape); preset != presets.end())
+    std::tie(scan.shape, scan.points) = preset->second;
   if (std::none_of(allShapes().begin(), allShapes().end(),
                    [&](const Shape& shape) { return shape.name == scan.shape; }))
     throw UsageError("unknown shape " + inQuotes(name),
