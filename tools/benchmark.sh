@@ -13,8 +13,7 @@
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
-#   --update-doc  also put the tables into doc/reference.md and README.md, and the gallery into
-#                 doc/gallery
+#   --update-doc  also put the tables into README.md and doc, and the pictures into doc/gallery
 #   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list
 #                 test/benchmark/clean.txt (or FILE) names must be meshed as cleanly as before
 #   --update-clean  mesh all clouds of these folders, and put the clean ones into the list
@@ -24,7 +23,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 build="$root/build/release"
 
 if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
-  sed -n -e '2,20s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  sed -n -e '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   [ "$#" -eq 1 ] && exit 0
   exit 2
 fi
@@ -54,5 +53,5 @@ if ! (
   echo "benchmark.sh: failed; the output of the build is in $log, remove $build to start afresh" >&2
   exit 1
 fi
-PYTHONPATH="$root/test/benchmark" PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 -m suite "$@" \
+PYTHONPATH="$root/test/benchmark:$root/tools" PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 -m suite "$@" \
   --build "$build"

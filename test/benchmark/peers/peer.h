@@ -1,10 +1,9 @@
 #pragma once
 
-#include "ply_file.h"
+#include "spherical_param/types.h"
 
-#include <chrono>
+#include <map>
 #include <string>
-#include <vector>
 
 namespace spherical_param::benchmark {
 
@@ -14,35 +13,22 @@ constexpr int kOrientationNeighbors = 10;
 
 /// What a method of a library makes of points.
 struct PeerResult {
-  Mesh mesh;                     ///< vertices without triangles are allowed
-  std::string parameters;        ///< all that was set, in one line
-  double normals_seconds = 0.0;  ///< to estimate and orient normals, if the method needs them [s]
-};
+  Positions points;  ///< vertices; those without triangles are allowed
+  Triangles triangles;
+  std::string parameters;  ///< all that was set, in one line
 
-struct PeerMethod {
-  std::string name;
-  PeerResult (*reconstruct)(const Positions& points) = nullptr;
-};
-
-/// Measures wall time.
-class Stopwatch {
-public:
-  /// Time since the construction or the last call [s].
-  double lap() {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
-    begin_ = std::chrono::steady_clock::now();
-    return seconds.count();
+  /// Sizes it for vertices and triangles.
+  void resize(std::size_t vertices, std::size_t count) {
+    points.resize(3, static_cast<Eigen::Index>(vertices));
+    triangles.resize(3, static_cast<Eigen::Index>(count));
   }
-
-private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// The main() of all peers, PROGRAM METHOD POINTS.ply MESH.ply REPORT.json: reads the points,
-/// reconstructs, writes the mesh and a report.
+/// The main() of all peers, PROGRAM METHOD POINTS.ply MESH.ply: reads the points, reconstructs,
+/// writes the mesh, prints a report in JSON.
 ///
-/// \param library with its version.
+/// \param library with its version. \param methods by their names.
 int runPeer(int argc, char** argv, const std::string& library,
-            const std::vector<PeerMethod>& methods);
+            const std::map<std::string, PeerResult (*)(const Positions&)>& methods);
 
 }  // namespace spherical_param::benchmark

@@ -9,15 +9,15 @@ import time
 
 from . import clean, comparison, gallery, machine, maps, paper, scaling
 from .programs import Failure, Programs, load_clouds
-from .report import Report
+from .report import ROOT, Report
 
 SECTIONS = {
-    "clean": clean.section,
-    "paper": paper.section,
-    "comparison": comparison.section,
-    "maps": maps.section,
-    "scaling": scaling.section,
-    "gallery": gallery.section,
+    "clean": ("Clean clouds", clean.section),
+    "paper": ("The paper", paper.section),
+    "comparison": ("Quality and peers", comparison.section),
+    "maps": ("The map to the sphere", maps.section),
+    "scaling": ("Scaling", scaling.section),
+    "gallery": ("Gallery", gallery.section),
 }
 
 
@@ -25,13 +25,11 @@ class Context:
     """What the sections share: where things are, and how much is wanted."""
 
     def __init__(self, arguments, work):
-        self.out = arguments.out
-        self.work = pathlib.Path(work)
+        self.arguments, self.out, self.work = arguments, arguments.out, pathlib.Path(work)
         self.quick, self.large = arguments.quick, arguments.large
         self.programs = Programs(arguments.build / "bin", self.work, self.choose(10000, 50000))
         self.models = load_clouds(arguments.models) if arguments.models else []
-        self.clean = arguments.clean, arguments.clean_list, arguments.update_clean
-        self.lost = []
+        self.lost = []  # clouds that are no longer clean
         self.report = Report(self.out)
         self.started = time.monotonic()
 
@@ -48,34 +46,42 @@ def main(words):
     parser.add_argument("models", type=pathlib.Path, nargs="?")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--large", action="store_true")
-    parser.add_argument("--only", choices=SECTIONS, action="append")
+    parser.add_argument("--only", choices=SECTIONS, action="append", default=[])
     parser.add_argument("--update-doc", action="store_true")
-    parser.add_argument("--clean", type=pathlib.Path, metavar="DIR", action="append")
+    parser.add_argument("--clean", type=pathlib.Path, metavar="DIR", action="append", default=[])
     parser.add_argument("--clean-list", type=pathlib.Path, metavar="FILE", default=clean.LIST)
     parser.add_argument("--update-clean", action="store_true")
     parser.add_argument("--build", type=pathlib.Path, required=True)
     arguments = parser.parse_args(words)
-    if not arguments.clean and (arguments.update_clean or "clean" in (arguments.only or ())):
+    if not arguments.clean and (arguments.update_clean or "clean" in arguments.only):
         raise Failure("no clouds are given to compare", "add --clean DIR")
+    sections = arguments.only or [name for name in SECTIONS if name != "clean" or arguments.clean]
     out = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     if any(out.iterdir()) and not (out / "report.md").is_file():
         raise Failure(f"'{out}' has files that are no report", "give a new folder")
-    root = pathlib.Path(__file__).resolve().parents[3]
     with tempfile.TemporaryDirectory(prefix="work_", dir=out) as work:
         context = Context(arguments, work)
         report = context.report
-        report.facts["provenance"] = machine.describe(root, arguments.build)
-        for name, make in SECTIONS.items():
-            if not arguments.only or name in arguments.only:
+        provenance = machine.describe(ROOT, arguments.build)
+        report.blocks["provenance"] = provenance + "\n"
+        report.text(f"""
+            # Benchmark report of pcl_spherical_param
+
+            {provenance}
+
+            Times are wall times of whole processes, the median of several runs, unless the text says otherwise.
+            Lengths are in percent of the diagonal of the bounding box of the true surface. `-`: not defined, or not
+            known.""")
+        for name, (title, make) in SECTIONS.items():
+            if name in sections:
+                report.text(f"## {title}")
                 make(context)
-    report.facts["minutes"] = (time.monotonic() - context.started) / 60
     report.write()
     if arguments.update_doc:
-        for page in ("README.md", "doc/reference.md") if report.tables else ():
-            report.update_doc(root / page)
-        if "gallery" in report.facts:
-            shutil.copytree(out / "gallery", root / "doc" / "gallery", dirs_exist_ok=True)
+        report.update_documents()
+        if "gallery" in sections:
+            shutil.copytree(out / "gallery", ROOT / "doc" / "gallery", dirs_exist_ok=True)
     context.say(f"report: {out / 'report.md'}")
     if context.lost:
         raise Failure(f"no longer as clean as in the list: {', '.join(context.lost)}",

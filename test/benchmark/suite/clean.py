@@ -87,11 +87,9 @@ def _compare(before, now, fault):
 
 def section(context):
     """Listed clouds that are found; to update the list, all that are found."""
-    folders, path, is_update = context.clean
-    if not folders:
-        return
+    path, is_update = context.arguments.clean_list, context.arguments.update_clean
     entries = _read(path) if path.is_file() or not is_update else {}
-    clouds = _find(folders)
+    clouds = _find(context.arguments.clean)
     names = [name for name in clouds if is_update or name in entries]
     if not names:
         raise Failure(f"none of the clouds of {path} was found", "give their folders by --clean")
@@ -113,6 +111,7 @@ def section(context):
     found = [row["result"] for row in rows]
     counts = ", ".join(f"{found.count(result)} {result}" for result in RESULTS if result in found)
     context.say(f"clean: {counts}")
-    context.report.facts["clean_counts"] = counts
-    context.report.add("clean", CLEAN, rows)
+    context.report.text(f"{counts}. *Lost*: faults, or triangles that intersect, or more is left out than when the "
+                        "list was written.")  # fmt: skip
+    context.report.table("clean", CLEAN, rows)
     context.lost = [row["cloud"] for row in rows if row["result"] == "lost"]

@@ -6,16 +6,16 @@ import statistics
 from .programs import Failure, in_turn, median_seconds
 
 OURS = "ours"
-PEERS = [  # label, program, method
-    ("CGAL advancing front", "benchmark_peer_cgal", "advancing_front"),
-    ("CGAL advancing front, filled", "benchmark_peer_cgal", "advancing_front_filled"),
-    ("CGAL Poisson", "benchmark_peer_cgal", "poisson"),
-    ("CGAL alpha wrap", "benchmark_peer_cgal", "alpha_wrap"),
-    ("PCL greedy projection", "benchmark_peer_pcl", "gp3"),
-    ("PCL Poisson", "benchmark_peer_pcl", "poisson"),
-    ("Open3D ball pivoting", "benchmark_peer_open3d", "ball_pivoting"),
-    ("Open3D Poisson", "benchmark_peer_open3d", "poisson"),
-]
+PEERS = {  # program and method
+    "CGAL advancing front": ("benchmark_peer_cgal", "advancing_front"),
+    "CGAL advancing front, filled": ("benchmark_peer_cgal", "advancing_front_filled"),
+    "CGAL Poisson": ("benchmark_peer_cgal", "poisson"),
+    "CGAL alpha wrap": ("benchmark_peer_cgal", "alpha_wrap"),
+    "PCL greedy projection": ("benchmark_peer_pcl", "gp3"),
+    "PCL Poisson": ("benchmark_peer_pcl", "poisson"),
+    "Open3D ball pivoting": ("benchmark_peer_open3d", "ball_pivoting"),
+    "Open3D Poisson": ("benchmark_peer_open3d", "poisson"),
+}
 
 QUALITY = [("model", "cloud"), ("method", "method"), ("sphere", "closed, manifold, genus 0"),
            ("used", "points used [%]", 2), ("intersections", "self-intersections"),
@@ -31,60 +31,48 @@ SUMMARY = [("method", "method"), ("clouds", "clouds"),
 RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one thread [s]", 2),
         ("gain", "one thread / all", 2), ("peer", "CGAL advancing front [s]", 2),
         ("ratio", "ours / advancing front", 2)]  # fmt: skip
+PARAMETERS = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
 
 # Scans, quick and in full.
 GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety",
                                 "max", "igea"))  # fmt: skip
 WITH_PEERS = (("animal_2000",), ("hand_10000",))
 RACES = (("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))
-# Pictures of larger meshes take long to draw and show no more.
-MAX_DRAWN_BYTES = 200000
 
 
-def _run_ours(context, cloud, mesh, report):
-    return [context.programs.reconstruction, cloud.points, mesh, "-quiet", "-json", report]
+def find_peers(context, labels=PEERS):
+    """The programs of those that were built; quick: of PCL alone."""
+    return {label: context.programs.find(PEERS[label][0], required=False) for label in labels
+            if PEERS[label][0] == "benchmark_peer_pcl" or not context.quick}  # fmt: skip
 
 
-def _compare(context, cloud, peers, rows, parameters):
-    """Adds a row for each method on one cloud; returns a line with its picture, if there is one."""
-    methods = [(OURS, None, None), *peers]
+def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60.0):
+    """A row for each method on one cloud, and its mesh if it made one; adds the parameters of the peers."""
+    methods = {OURS: None, **{label: program for label, program in peers.items() if program}}
     meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
-    reports = [mesh.with_suffix(".json") for mesh in meshes]
     commands = [
-        [program, method, cloud.points, mesh, report] if program
-        else _run_ours(context, cloud, mesh, report)
-        for (_, program, method), mesh, report in zip(methods, meshes, reports)
+        [program, PEERS[label][1], cloud.points, mesh] if program
+        else [context.programs.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options]
+        for (label, program), mesh in zip(methods.items(), meshes)
     ]  # fmt: skip
-    runs = in_turn(commands, context.choose(1, 3), timeout=60.0)
-    drawn = []
-    for (label, program, _), mesh, report, done in zip(methods, meshes, reports, runs):
+    compared = []
+    for label, mesh, done in zip(methods, meshes, in_turn(commands, repeats, timeout)):
         row = {"model": cloud.name, "method": label}
-        rows.append(row)
         if done[-1].problem:
             row["failure"] = done[-1].problem
-            if context.quick or not program:
+            if context.quick or label == OURS:
                 raise Failure(f"{label} on {cloud.name}: {done[-1].problem}", "run it alone")
+            compared.append((row, None))
             continue
-        told = json.loads(report.read_text())
-        row["seconds"] = median_seconds(done)
-        row["megabytes"] = told["peak_memory_bytes"] / 1e6
-        if program:
-            row["reconstruction_seconds"] = told["reconstruction_seconds"]
-            parameters[label] = {"method": label, "library": told["library"],
-                                 "parameters": told["parameters"]}  # fmt: skip
+        output = done[-1].output
+        # Libraries print, too.
+        told = json.loads(output if label == OURS else output.splitlines()[-1])
+        row.update(seconds=median_seconds(done), megabytes=told["peak_memory_bytes"] / 1e6)
+        if label != OURS:
+            parameters[label] = {"method": label, "library": told["library"], "parameters": told["parameters"]}
         row.update(context.programs.measure(mesh, cloud))
-        drawn.append((mesh, label))
-    picture = ""
-    if peers and cloud.points.stat().st_size < MAX_DRAWN_BYTES:
-        from .drawing import Pictures
-
-        pictures = Pictures(context.out / f"methods_{cloud.name}.png")
-        for begin in range(0, len(drawn), 5):
-            pictures.row(*zip(*drawn[begin : begin + 5]), up=cloud.up)
-        picture = f"![{cloud.name}, by each method, flat shaded]({pictures.save()})\n"
-    for mesh in meshes:
-        mesh.unlink(missing_ok=True)
-    return picture
+        compared.append((row, mesh))
+    return compared
 
 
 def summarize(rows):
@@ -108,15 +96,14 @@ def summarize(rows):
 
 def race(context, clouds):
     """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
-    peer = None if context.quick else context.programs.find("benchmark_peer_cgal", required=False)
+    peer = find_peers(context).get("CGAL advancing front")
     rows = []
     mesh = context.work / "race.ply"
     for cloud in clouds:
         ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
         commands = [ours, [*ours, "-threads", "1"]]
         if peer:
-            report = mesh.with_suffix(".json")
-            commands.append([peer, "advancing_front", cloud.points, mesh, report])
+            commands.append([peer, "advancing_front", cloud.points, mesh])
         runs = in_turn(commands, context.choose(1, 5), long_run=4.0)
         seconds = [median_seconds(done) for done in runs]
         row = {"model": cloud.name, "ours": seconds[0], "single": seconds[1],
@@ -124,33 +111,39 @@ def race(context, clouds):
         if peer:
             row.update(peer=seconds[2], ratio=seconds[0] / seconds[2])
         rows.append(row)
-    mesh.unlink(missing_ok=True)
-    context.report.add("race", RACE, rows)
+    context.report.table("race", RACE, rows)
 
 
 def section(context):
     programs, report = context.programs, context.report
-    found = [(label, programs.find(name, required=False), method) for label, name, method in PEERS
-             if name == "benchmark_peer_pcl" or not context.quick]  # fmt: skip
-    peers = [peer for peer in found if peer[1]]
-    missing = ", ".join(label for label, program, _ in found if not program)
-    report.facts["missing_peers"] = f"Not built, hence not compared: {missing}." if missing else ""
+    peers = find_peers(context)
+    report.text("""
+        Each method gets the points alone. Methods that need normals estimate them with their own library; that is part
+        of the time. *Closed, manifold, genus 0* is judged by a referee of the suite on the file that was written.
+        Self-intersections are pairs of triangles, in exact arithmetic. *True edges* are those of the mesh whose
+        vertices are the points of the cloud.""")
     generated = [programs.scan(name) for name in context.choose(*GENERATED)]
     parameters = {}
-    for name, clouds, with_peers in (
-        ("models", context.models, {cloud.name for cloud in context.models}),
-        ("generated", generated, context.choose(*WITH_PEERS)),
+    for name, title, clouds, with_peers in (
+        ("models", "Models", context.models, [cloud.name for cloud in context.models]),
+        ("generated", "Generated scans", generated, context.choose(*WITH_PEERS)),
     ):
-        rows, pictures = [], ""
+        rows = []
+        report.text(f"### {title}" if clouds else "")
         for cloud in clouds:
-            others = peers if cloud.name in with_peers else []
-            context.say(f"{name}: {cloud.name}, {len(others) + 1} methods")
-            pictures += _compare(context, cloud, others, rows, parameters)
-        report.facts[f"{name}_pictures"] = pictures
-        report.add(f"{name}_summary", SUMMARY, summarize(rows))
-        report.add(name, QUALITY, rows)
+            context.say(f"{name}: {cloud.name}")
+            rows += [row for row, _ in compare(
+                context, cloud, peers if cloud.name in with_peers else {}, parameters,
+                repeats=context.choose(1, 3))]  # fmt: skip
+        report.table(f"{name}_summary", SUMMARY, summarize(rows))
+        report.table(name, QUALITY, rows)
     context.say("in turn with the fastest peer")
-    scans = [programs.scan(name, truth=False) for name in context.choose(*RACES)]
-    race(context, context.models + scans)
-    columns = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
-    report.add("peers", columns, list(parameters.values()))
+    report.text("""
+        ### In turn with the fastest peer
+
+        Whole processes in turn; medians of 5, or one run if it takes longer than 4 s.""")
+    race(context, context.models + [programs.scan(name, truth=False) for name in context.choose(*RACES)])
+    missing = ", ".join(label for label, program in peers.items() if not program)
+    report.text("### Parameters of the peers")
+    report.text(f"Not built, hence not compared: {missing}." if missing else "")
+    report.table("peers", PARAMETERS, list(parameters.values()))

@@ -2,7 +2,7 @@
 
 import json
 
-from .programs import require, stage_seconds
+from .programs import flat, require, stage_seconds
 
 SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake",
           "plate", "torus", "bowl", "pair")  # fmt: skip
@@ -13,11 +13,12 @@ GRIDS = (10242, 101), (163842, 405)
 MAP_STAGES = ("read", "map", "atlas", "image", "write")
 
 MAPS = [("model", "cloud"), ("vertices", "vertices"),
-        ("flipped_before", "flipped triangles, embedding"), ("flipped", "map"),
-        ("area_before", "area distortion, embedding", 2), ("area", "map", 3), ("area_95", "95 %", 2),
-        ("area_max", "max", 1), ("angle_before", "angle distortion, embedding", 3),
-        ("angle", "map", 3), ("angle_95", "95 %", 2), ("angle_max", "max", 1),
-        ("degrees", "angles off by [deg]", 1), ("stretch", "stretch efficiency", 3),
+        ("embedding_distortion.flipped_triangles", "flipped triangles, embedding"), ("flipped_triangles", "map"),
+        ("embedding_distortion.area_distortion.mean", "area distortion, embedding", 2),
+        ("area_distortion.mean", "map", 3), ("area_distortion.p95", "95 %", 2), ("area_distortion.max", "max", 1),
+        ("embedding_distortion.angle_distortion.mean", "angle distortion, embedding", 3),
+        ("angle_distortion.mean", "map", 3), ("angle_distortion.p95", "95 %", 2), ("angle_distortion.max", "max", 1),
+        ("mean_angle_difference_degrees", "angles off by [deg]", 1), ("stretch_efficiency", "stretch efficiency", 3),
         ("seconds", "time [s]", 2), ("ratio", "of the meshing", 1)]  # fmt: skip
 REMESHED = [("model", "cloud"), ("made", "remeshed as"), ("vertices", "points"),
             ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
@@ -28,26 +29,14 @@ REMESHED = [("model", "cloud"), ("made", "remeshed as"), ("vertices", "points"),
 
 def _remesh(context, *words):
     """Runs the tool: seconds of the whole process, and the tool's report."""
-    done = require([context.programs.find("pcl_spherical_param_remesh"), *words, "-quiet",
-                    "-json", "-"])  # fmt: skip
+    done = require([context.programs.find("pcl_spherical_param_remesh"), *words, "-quiet", "-json", "-"])
     return done.seconds, json.loads(done.output)
 
 
 def _map_row(cloud, report):
     seconds = stage_seconds(report)
     meshing = sum(s for stage, s in seconds.items() if stage not in MAP_STAGES)
-    row = {"model": cloud.name, "vertices": report["vertices"],
-           "flipped_before": report["embedding_distortion"]["flipped_triangles"],
-           "flipped": report["flipped_triangles"],
-           "degrees": report["mean_angle_difference_degrees"],
-           "stretch": report["stretch_efficiency"],
-           "seconds": seconds["map"], "ratio": seconds["map"] / meshing}  # fmt: skip
-    for kind in ("area", "angle"):
-        distortion = report[f"{kind}_distortion"]
-        row.update({kind: distortion["mean"], f"{kind}_95": distortion["p95"],
-                    f"{kind}_max": distortion["max"],
-                    f"{kind}_before": report["embedding_distortion"][f"{kind}_distortion"]["mean"]})  # fmt: skip
-    return row
+    return {"model": cloud.name, **flat(report), "seconds": seconds["map"], "ratio": seconds["map"] / meshing}
 
 
 def _remeshed_rows(context, cloud, points, side):
@@ -63,21 +52,24 @@ def _remeshed_rows(context, cloud, points, side):
         yield {"model": cloud.name, "made": made, "seconds": seconds, "mesh_rms": of_mesh["rms"],
                "mesh_hausdorff": of_mesh["hausdorff"],
                **context.programs.measure(mesh, cloud, over_cloud=False)}  # fmt: skip
-    mesh.unlink(missing_ok=True)
-    image.unlink(missing_ok=True)
 
 
 def section(context):
     programs, report = context.programs, context.report
+    report.text("""
+        The map of a finished mesh beside the embedding that the mesh came from. The optimisation of the mesh moves
+        vertices, so that the embedding has flipped triangles. Area distortion is max(r, 1/r) of the ratio r of a
+        triangle's fraction of the area on the sphere to its fraction in space; angle distortion is the ratio of the
+        singular values. Both are weighted by area and are 1 without distortion. *Angles off by*: mean absolute
+        difference of the angles at corners. Stretch efficiency: Praun and Hoppe 2003.""")
     generated = [programs.scan(name, truth=False) for name in context.choose(
         ("animal_2000",), [f"{shape}_10000" for shape in SHAPES])]  # fmt: skip
-    mesh = context.work / "map.ply"
     for name, clouds in (("maps", context.models), ("maps_generated", generated)):
         rows = []
         for cloud in clouds:
             context.say(f"map: {cloud.name}")
-            rows.append(_map_row(cloud, _remesh(context, cloud.points, mesh, *SPHERE)[1]))
-        report.add(name, MAPS, rows)
+            rows.append(_map_row(cloud, _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]))
+        report.table(name, MAPS, rows)
     by_size = sorted((cloud for cloud in context.models if cloud.truth),
                      key=lambda cloud: cloud.points.stat().st_size)  # fmt: skip
     # The smallest, one in the middle, the largest: each takes ten seconds or more.
@@ -85,10 +77,12 @@ def section(context):
     chosen = dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:])
     points, side = context.choose(*GRIDS)
     rows = []
-    for cloud in chosen or [
-        programs.scan(name) for name in context.choose(("animal_2000",), ("hand_10000", "igea"))
-    ]:
+    for cloud in chosen or map(programs.scan, context.choose(("animal_2000",), ("hand_10000", "igea"))):
         context.say(f"remesh: {cloud.name}")
         rows += _remeshed_rows(context, cloud, points, side)
-    report.facts.update(grid_points=points, grid_side=side)
-    report.add("remeshed", REMESHED, rows)
+    report.text(f"""
+        ### The surface from the sphere
+
+        The surface, sampled again from the sphere: {points:,} points of a geodesic grid, and a geometry image of
+        {side} x {side} positions that was written and read. Times include the meshing.""")
+    report.table("remeshed", REMESHED, rows)

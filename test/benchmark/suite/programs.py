@@ -7,6 +7,8 @@ import statistics
 import subprocess
 import time
 
+from .quality import Mesh, Referee, compare
+
 # The paper's own method, with all of its iterations.
 PAPER = ("-method", "paper", "-tolerance", "0")
 # Exit code of our tools if too many triangles intersect. The mesh is written, and measured like others.
@@ -76,6 +78,17 @@ def stage_seconds(report):
     return seconds
 
 
+def flat(report, prefix=""):
+    """The numbers of a report of a tool by names such as "area_distortion.mean"."""
+    numbers = {}
+    for name, value in report.items():
+        if isinstance(value, dict):
+            numbers.update(flat(value, f"{prefix}{name}."))
+        elif isinstance(value, (int, float)):
+            numbers[prefix + name] = value
+    return numbers
+
+
 @dataclasses.dataclass(frozen=True)
 class Cloud:
     """Points to mesh, and a mesh of the surface that they are from, if there is one."""
@@ -83,14 +96,13 @@ class Cloud:
     name: str
     points: pathlib.Path
     truth: pathlib.Path | None = None
-    up: str = "z"
 
 
 class Programs:
     def __init__(self, folder, work, samples):
         self.folder, self.work, self.samples = folder, work, samples
         self.reconstruction = self.find("pcl_spherical_param_reconstruction")
-        self.quality = self.find("benchmark_mesh_quality")
+        self.referee = Referee(self.find("libbenchmark_quality.so"))
 
     def find(self, name, required=True):
         path = self.folder / name
@@ -124,12 +136,17 @@ class Programs:
 
     def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):
         """The referee's measures of a mesh, by the keys of the tables."""
-        command = [self.quality, mesh]
-        if cloud:
-            command += ["-cloud", cloud.points] if over_cloud else []
-            command += ["-truth", cloud.truth, "-samples", self.samples] if cloud.truth else []
-        command += ["-sphere", sphere] if sphere else []
-        return json.loads(require(command).output)
+        mesh = Mesh.read(mesh)
+        found = {"vertices": len(mesh.points), "triangles": len(mesh.triangles), **self.referee.topology(mesh),
+                 "intersections": self.referee.intersections(mesh)}  # fmt: skip
+        truth = Mesh.read(cloud.truth) if cloud and cloud.truth else None
+        if cloud and over_cloud:
+            found.update(compare(mesh, Mesh.read(cloud.points).points, truth))
+        if truth:
+            found.update(self.referee.distances(mesh, truth, self.samples))
+        if sphere:
+            found.update(self.referee.distortion(mesh, Mesh.read(sphere)))
+        return found
 
 
 def load_clouds(folder):
@@ -138,6 +155,4 @@ def load_clouds(folder):
     if not paths:
         raise Failure(f"'{folder}' has no points/NAME.ply", "give the folder of the models")
     truths = [folder / "truth" / path.name for path in paths]
-    # Most models that are distributed have y pointing up.
-    return [Cloud(path.stem, path, truth if truth.is_file() else None, up="y")
-            for path, truth in zip(paths, truths)]  # fmt: skip
+    return [Cloud(path.stem, path, truth if truth.is_file() else None) for path, truth in zip(paths, truths)]

@@ -1,38 +1,25 @@
-"""The report: report.md.in with its marks <!-- TABLE --> and {FACT} filled, and a CSV file for each table."""
+"""The report: texts, pictures and tables in their order, a CSV file for each table, and tables in the documents."""
 
 import csv
-import dataclasses
 import math
 import os
 import pathlib
 import re
+import textwrap
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+# The documents whose tables --update-doc replaces: what follows a mark <!-- NAME -->, up to the next blank line.
+DOCUMENTS = [ROOT / "README.md", ROOT / "doc" / "benchmarks.md", ROOT / "doc" / "gallery" / "README.md"]
 MARK = re.compile(r"<!-- (\w+) -->\n(?:[^\n]+\n)*")
-FACT = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 
 
-@dataclasses.dataclass
-class Table:
-    """Rows of values. Columns are (key, title with unit[, digits after the point])."""
-
-    columns: list
-    rows: list[dict] = dataclasses.field(default_factory=list)
-
-    def markdown(self):
-        lines = [[column[1] for column in self.columns]]
-        numeric = [any(isinstance(row.get(c[0]), (int, float)) for row in self.rows)
-                   for c in self.columns]  # fmt: skip
-        lines.append(["---:" if number else "---" for number in numeric])
-        lines += [[_cell(row.get(c[0]), *c[2:]) for c in self.columns] for row in self.rows]
-        return "".join("| " + " | ".join(line) + " |\n" for line in lines)
-
-    def write_csv(self, path):
-        """All values of the rows, not rounded, also those that have no column."""
-        keys = dict.fromkeys(key for row in self.rows for key in row)
-        with path.open("w", newline="") as file:
-            writer = csv.DictWriter(file, keys, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(self.rows)
+def markdown(columns, rows):
+    """A table of dictionaries. Columns are (key, title with unit[, digits after the point])."""
+    lines = [[column[1] for column in columns]]
+    numeric = [any(isinstance(row.get(column[0]), (int, float)) for row in rows) for column in columns]
+    lines.append(["---:" if number else "---" for number in numeric])
+    lines += [[_cell(row.get(column[0]), *column[2:]) for column in columns] for row in rows]
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
 def _cell(value, digits=None):
@@ -54,38 +41,31 @@ def _write(path, text):
 class Report:
     def __init__(self, folder):
         self.folder = folder
-        self.tables, self.facts = {}, {}
+        self.paragraphs = []
+        self.blocks = {}  # what the documents may have, by the name of its mark
 
-    def add(self, name, columns, rows):
-        """A table, unless there are no rows."""
-        if rows:
-            self.tables[name] = Table(columns, rows)
+    def text(self, text):
+        self.paragraphs.append(textwrap.dedent(text).strip())
+
+    def picture(self, name, caption):
+        self.text(f"![{caption}]({name})")
+
+    def table(self, name, columns, rows):
+        """A table, unless there are no rows. The CSV file has all values, not rounded, also those without a column."""
+        if not rows:
+            return
+        self.blocks[name] = markdown(columns, rows)
+        self.text(f"{self.blocks[name]}\n[{name}.csv]({name}.csv)")
+        with (self.folder / f"{name}.csv").open("w", newline="") as file:
+            writer = csv.DictWriter(file, dict.fromkeys(key for row in rows for key in row), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
 
     def write(self):
-        """Parts of report.md.in whose tables or facts are missing are left out."""
-        for name, table in self.tables.items():
-            table.write_csv(self.folder / f"{name}.csv")
-        text = pathlib.Path(__file__).with_name("report.md.in").read_text()
-        pages = []
-        for section in re.split(r"^(?=## )", text, flags=re.MULTILINE):
-            head, *parts = re.split(r"^(?=### )", section, flags=re.MULTILINE)
-            made = [self._filled(part) for part in parts if self._has_all(part)]
-            pages += [self._filled(head), *made] if made or not parts else []
-        _write(self.folder / "report.md", "".join(pages))
+        _write(self.folder / "report.md", "\n\n".join(filter(None, self.paragraphs)) + "\n")
 
-    def _has_all(self, text):
-        return (all(found[1] in self.tables for found in MARK.finditer(text))
-                and all(found[1] in self.facts for found in FACT.finditer(text)))  # fmt: skip
-
-    def _filled(self, text):
-        text = FACT.sub(lambda found: format(self.facts[found[1]], found[2] or ""), text)
-        return MARK.sub(lambda found: self.tables[found[1]].markdown()
-                        + f"\n[{found[1]}.csv]({found[1]}.csv)\n", text)  # fmt: skip
-
-    def update_doc(self, path):
-        """Replaces what follows each mark in a page, up to the next blank line."""
-        blocks = {name: table.markdown() for name, table in self.tables.items()}
-        blocks["provenance"] = self.facts["provenance"] + "\n"
-        _write(path, MARK.sub(
-            lambda found: f"<!-- {found[1]} -->\n{blocks[found[1]]}" if found[1] in blocks
-            else found[0], path.read_text()))  # fmt: skip
+    def update_documents(self):
+        for path in DOCUMENTS:
+            _write(path, MARK.sub(
+                lambda found: f"<!-- {found[1]} -->\n{self.blocks[found[1]]}" if found[1] in self.blocks
+                else found[0], path.read_text()))  # fmt: skip

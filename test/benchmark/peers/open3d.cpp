@@ -12,12 +12,14 @@
 #include <cstdlib>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
 
 using namespace spherical_param::benchmark;
 using open3d::geometry::PointCloud;
+using open3d::geometry::TriangleMesh;
 using spherical_param::Positions;
 
 constexpr int normal_neighbors = 30;  // default of Open3D
@@ -27,7 +29,8 @@ const std::string normals_parameters =
     " neighbours on all cores, OrientNormalsConsistentTangentPlane " +
     std::to_string(kOrientationNeighbors) + " neighbours on 1 thread";
 
-PointCloud estimateNormals(const Positions& points) {
+/// The points with normals.
+PointCloud withNormals(const Positions& points) {
   PointCloud cloud;
   for (const auto& point : points.colwise())
     cloud.points_.emplace_back(point);
@@ -36,48 +39,34 @@ PointCloud estimateNormals(const Positions& points) {
   return cloud;
 }
 
-Mesh toMesh(const open3d::geometry::TriangleMesh& surface) {
-  Mesh mesh{spherical_param::Positions(3, surface.vertices_.size()),
-            spherical_param::Triangles(3, surface.triangles_.size())};
+PeerResult resultOf(const TriangleMesh& surface, const std::string& parameters) {
+  PeerResult result;
+  result.parameters = normals_parameters + parameters;
+  result.resize(surface.vertices_.size(), surface.triangles_.size());
   for (std::size_t v = 0; v < surface.vertices_.size(); ++v)
-    mesh.points.col(static_cast<Eigen::Index>(v)) = surface.vertices_[v];
+    result.points.col(static_cast<Eigen::Index>(v)) = surface.vertices_[v];
   for (std::size_t t = 0; t < surface.triangles_.size(); ++t)
-    mesh.triangles.col(static_cast<Eigen::Index>(t)) = surface.triangles_[t];
-  return mesh;
+    result.triangles.col(static_cast<Eigen::Index>(t)) = surface.triangles_[t];
+  return result;
 }
 
 /// Radii as in Open3D's tutorial on surface reconstruction.
 PeerResult ballPivoting(const Positions& points) {
-  PeerResult result;
-  Stopwatch stopwatch;
-  const PointCloud cloud = estimateNormals(points);
-  result.normals_seconds = stopwatch.lap();
-
+  const PointCloud cloud = withNormals(points);
   const std::vector<double> distances = cloud.ComputeNearestNeighborDistance();
   const double mean_distance = std::accumulate(distances.begin(), distances.end(), 0.0) /
                                static_cast<double>(distances.size());
   const double radius = 1.5 * mean_distance;
-  const auto surface = open3d::geometry::TriangleMesh::CreateFromPointCloudBallPivoting(
-      cloud, {radius, 2.0 * radius});
-  result.mesh = toMesh(*surface);
-  result.parameters =
-      normals_parameters + "; radii 1.5 and 3 mean distances to the nearest neighbour; 1 thread";
-  return result;
+  return resultOf(*TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {radius, 2.0 * radius}),
+                  "; radii 1.5 and 3 mean distances to the nearest neighbour; 1 thread");
 }
 
 PeerResult poisson(const Positions& points) {
-  PeerResult result;
-  Stopwatch stopwatch;
-  const PointCloud cloud = estimateNormals(points);
-  result.normals_seconds = stopwatch.lap();
-
+  const PointCloud cloud = withNormals(points);
   constexpr std::size_t depth = 8;
-  const auto [surface, densities] =
-      open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, depth);
-  result.mesh = toMesh(*surface);
-  result.parameters = normals_parameters + "; depth " + std::to_string(depth) +
-                      ", all else as Open3D sets it; all cores, waiting threads sleep";
-  return result;
+  return resultOf(*std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(cloud, depth)),
+                  "; depth " + std::to_string(depth) +
+                      ", all else as Open3D sets it; all cores, waiting threads sleep");
 }
 
 /// Lets threads sleep while they wait. By default those of OpenMP spin, which makes Poisson up to
@@ -85,9 +74,8 @@ PeerResult poisson(const Positions& points) {
 /// the second start.
 void letWaitingThreadsSleep(char** argv) {
   constexpr const char* variable = "OMP_WAIT_POLICY";
-  if (std::getenv(variable) == nullptr && setenv(variable, "passive", 0) == 0) {
+  if (std::getenv(variable) == nullptr && setenv(variable, "passive", 0) == 0)
     execv("/proc/self/exe", argv);
-  }
 }
 
 }  // namespace

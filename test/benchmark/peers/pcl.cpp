@@ -3,7 +3,6 @@
 #include "peer.h"
 
 #include <pcl/common/io.h>
-#include <pcl/conversions.h>
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/pcl_config.h>
 #include <pcl/point_cloud.h>
@@ -30,71 +29,48 @@ using spherical_param::Positions;
 constexpr int normal_neighbors = 16;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
-using Adjacency = std::vector<std::vector<int>>;
-
-Adjacency neighborGraph(const Cloud::Ptr& cloud) {
-  pcl::search::KdTree<pcl::PointNormal> tree;
-  tree.setInputCloud(cloud);
-  Adjacency adjacency(cloud->size());
-  pcl::Indices neighbors;
-  std::vector<float> squared_distances;
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    tree.nearestKSearch((*cloud)[i], kOrientationNeighbors, neighbors, squared_distances);
-    for (const int neighbor : neighbors) {
-      adjacency[i].push_back(neighbor);
-      adjacency[static_cast<std::size_t>(neighbor)].push_back(static_cast<int>(i));
-    }
-  }
-  return adjacency;
-}
-
-void flip(pcl::PointNormal& point) {
-  point.getNormalVector3fMap() *= -1.0F;
-}
 
 /// Orients the normals along the minimum spanning tree of the neighbour graph, where an edge costs
 /// 1 - |n_i . n_j|, from the uppermost point on, whose normal points up (H. Hoppe et al., Surface
 /// Reconstruction from Unorganized Points, 1992, section 3.3). PCL itself orients normals to a
 /// viewpoint, which a closed surface does not have.
 void orientNormals(const Cloud::Ptr& cloud) {
-  const Adjacency adjacency = neighborGraph(cloud);
-  std::vector<int> from_top(cloud->size());
-  std::iota(from_top.begin(), from_top.end(), 0);
-  const auto at = [&cloud](int i) -> pcl::PointNormal& {
-    return (*cloud)[static_cast<std::size_t>(i)];
-  };
-  std::sort(from_top.begin(), from_top.end(), [&](int a, int b) { return at(a).z > at(b).z; });
-
-  using Edge = std::tuple<float, int, int>;  // cost, from, to
+  pcl::search::KdTree<pcl::PointNormal> tree;
+  tree.setInputCloud(cloud);
+  std::vector<std::vector<std::size_t>> adjacency(cloud->size());
+  pcl::Indices neighbors;
+  std::vector<float> squared_distances;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    tree.nearestKSearch((*cloud)[i], kOrientationNeighbors, neighbors, squared_distances);
+    for (const int neighbor : neighbors) {
+      adjacency[i].push_back(static_cast<std::size_t>(neighbor));
+      adjacency[static_cast<std::size_t>(neighbor)].push_back(i);
+    }
+  }
+  const auto normal = [&](std::size_t i) { return (*cloud)[i].getNormalVector3fMap(); };
+  using Edge = std::tuple<float, std::size_t, std::size_t>;  // cost, from, to
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> edges;
   std::vector<bool> done(cloud->size(), false);
-  const auto visit = [&](int i) {
-    done[static_cast<std::size_t>(i)] = true;
-    for (const int neighbor : adjacency[static_cast<std::size_t>(i)]) {
-      if (!done[static_cast<std::size_t>(neighbor)]) {
-        const float cosine = at(i).getNormalVector3fMap().dot(at(neighbor).getNormalVector3fMap());
-        edges.emplace(1.0F - std::abs(cosine), i, neighbor);
-      }
-    }
+  const auto visit = [&](std::size_t i, bool is_turned) {
+    if (is_turned)
+      normal(i) *= -1.0F;
+    done[i] = true;
+    for (const std::size_t neighbor : adjacency[i])
+      if (!done[neighbor])
+        edges.emplace(1.0F - std::abs(normal(i).dot(normal(neighbor))), i, neighbor);
   };
-  for (const int top : from_top) {  // the first point of each connected part
-    if (done[static_cast<std::size_t>(top)]) {
-      continue;
-    }
-    if (at(top).normal_z < 0.0F) {
-      flip(at(top));
-    }
-    visit(top);
+  std::vector<std::size_t> from_top(cloud->size());
+  std::iota(from_top.begin(), from_top.end(), std::size_t{0});
+  std::sort(from_top.begin(), from_top.end(),
+            [&](std::size_t a, std::size_t b) { return (*cloud)[a].z > (*cloud)[b].z; });
+  for (const std::size_t top : from_top) {  // the first point of each connected part
+    if (!done[top])
+      visit(top, normal(top).z() < 0.0F);
     while (!edges.empty()) {
       const auto [cost, from, to] = edges.top();
       edges.pop();
-      if (done[static_cast<std::size_t>(to)]) {
-        continue;
-      }
-      if (at(from).getNormalVector3fMap().dot(at(to).getNormalVector3fMap()) < 0.0F) {
-        flip(at(to));
-      }
-      visit(to);
+      if (!done[to])
+        visit(to, normal(from).dot(normal(to)) < 0.0F);
     }
   }
 }
@@ -106,7 +82,7 @@ const std::string normals_parameters =
 
 /// The points with normals out of the surface, if it is closed. Points without a normal are left
 /// out.
-Cloud::Ptr estimateNormals(const Positions& points) {
+Cloud::Ptr withNormals(const Positions& points) {
   const auto positions = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (const Eigen::Vector3f point : points.cast<float>().colwise())
     positions->emplace_back(point.x(), point.y(), point.z());
@@ -128,17 +104,18 @@ Cloud::Ptr estimateNormals(const Positions& points) {
   return cloud;
 }
 
-template <typename PointT>
-Mesh toMesh(const pcl::PointCloud<PointT>& vertices, const std::vector<pcl::Vertices>& polygons) {
-  Mesh mesh{Positions(3, vertices.size()), spherical_param::Triangles(3, polygons.size())};
+PeerResult resultOf(const Cloud& vertices, const std::vector<pcl::Vertices>& polygons,
+                    const std::string& parameters) {
+  PeerResult result;
+  result.parameters = normals_parameters + parameters;
+  result.resize(vertices.size(), polygons.size());
   for (std::size_t v = 0; v < vertices.size(); ++v)
-    mesh.points.col(static_cast<Eigen::Index>(v)) =
-        vertices[v].getVector3fMap().template cast<double>();
+    result.points.col(static_cast<Eigen::Index>(v)) = vertices[v].getVector3fMap().cast<double>();
   for (std::size_t t = 0; t < polygons.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      mesh.triangles(static_cast<int>(k), static_cast<Eigen::Index>(t)) =
+      result.triangles(static_cast<int>(k), static_cast<Eigen::Index>(t)) =
           polygons[t].vertices.at(k);
-  return mesh;
+  return result;
 }
 
 /// Mean distance of a point to its nearest neighbour [unit of the cloud].
@@ -156,11 +133,7 @@ double meanNeighborDistance(const Cloud& cloud, const pcl::search::KdTree<pcl::P
 /// Parameters as in PCL's tutorial on fast triangulation, except for the radius, which belongs to
 /// its data.
 PeerResult greedyProjection(const Positions& points) {
-  PeerResult result;
-  Stopwatch stopwatch;
-  const Cloud::Ptr cloud = estimateNormals(points);
-  result.normals_seconds = stopwatch.lap();
-
+  const Cloud::Ptr cloud = withNormals(points);
   constexpr double radius_factor = 10.0;
   const auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
   tree->setInputCloud(cloud);
@@ -177,20 +150,14 @@ PeerResult greedyProjection(const Positions& points) {
   triangulation.setConsistentVertexOrdering(true);  // changes no triangle, only its direction
   std::vector<pcl::Vertices> polygons;
   triangulation.reconstruct(polygons);
-  result.mesh = toMesh(*cloud, polygons);
-  result.parameters =
-      normals_parameters +
+  return resultOf(
+      *cloud, polygons,
       "; radius 10 mean distances to the nearest neighbour, mu 2.5, 100 neighbours at most, "
-      "surface angle 45, angles 10 to 120 degrees";
-  return result;
+      "surface angle 45, angles 10 to 120 degrees");
 }
 
 PeerResult poisson(const Positions& points) {
-  PeerResult result;
-  Stopwatch stopwatch;
-  const Cloud::Ptr cloud = estimateNormals(points);
-  result.normals_seconds = stopwatch.lap();
-
+  const Cloud::Ptr cloud = withNormals(points);
   constexpr int depth = 8;
   pcl::Poisson<pcl::PointNormal> reconstruction;
   reconstruction.setInputCloud(cloud);
@@ -198,10 +165,8 @@ PeerResult poisson(const Positions& points) {
   Cloud vertices;
   std::vector<pcl::Vertices> polygons;
   reconstruction.reconstruct(vertices, polygons);
-  result.mesh = toMesh(vertices, polygons);
-  result.parameters = normals_parameters + "; depth " + std::to_string(depth) +
-                      ", 1 thread, all else as PCL sets it";
-  return result;
+  return resultOf(vertices, polygons,
+                  "; depth " + std::to_string(depth) + ", 1 thread, all else as PCL sets it");
 }
 
 }  // namespace
