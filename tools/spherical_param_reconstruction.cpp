@@ -5,7 +5,6 @@
 #include "common/file_formats.h"
 #include "common/html_report.h"
 #include "common/reconstruction_report.h"
-#include "common/report_page.h"
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "spherical_param/version.h"
@@ -250,9 +249,8 @@ void writeViews(const Settings& settings, CloudReconstruction& cloud, const Surf
   if (!settings.page.empty()) {
     run.console.begin("report");
     OutputFile& file = run.open(settings.page);
-    writeHtmlReport(file, reportPage(),
-                    {toolText().name, settings.command, report(settings, cloud, surface), &cloud,
-                     &surface, settings.reconstruction.options.threads});
+    writeHtmlReport(file, {toolText().name, settings.command, report(settings, cloud, surface),
+                           &cloud, &surface, settings.reconstruction.options.threads});
     file.finish();
     cloud.stages.push_back(run.console.end());
   }

@@ -4,6 +4,7 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
+#include "space_filling_curve.h"
 #include "spherical_param/result_fields.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
@@ -13,7 +14,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -73,9 +73,11 @@ std::string element(const std::string& id, std::string_view bytes) {
   return "<script type=\"text/plain\" id=\"" + id + "\">" + base64(deflated(bytes)) + "</script>\n";
 }
 
-std::vector<double> numbersOf(const Positions& points) {
-  return {points.data(), points.data() + points.size()};
+Eigen::AlignedBox3d boxOf(const Positions& points) {
+  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
 }
+
+const Eigen::AlignedBox3d unit_box(Eigen::Vector3d::Constant(-1.0), Eigen::Vector3d::Ones());
 
 /// The arrays of a page: elements with the numbers, and what the page must know to read them.
 class Arrays {
@@ -93,106 +95,85 @@ public:
         bytes += static_cast<char>(difference >> (8 * b) & 0xffU);
       }
     }
-    Json& entry = about_[name];
-    entry["bits"] = 8 * sizeof(Integer);
-    entry["components"] = components;
+    about_[name] = {{"bits", 8 * sizeof(Integer)}, {"components", components}};
     elements_ += element("array-" + name, bytes);
   }
 
-  /// Adds numbers from `min` to `max`, in 2^8 or 2^16 steps.
-  template <typename Integer>
-  void add(const std::string& name, std::size_t components, const std::vector<double>& values,
-           const std::vector<double>& min, const std::vector<double>& max) {
-    std::vector<Integer> steps;
-    steps.reserve(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double low = min[i % components];
-      const double high = max[i % components];
-      const double fraction =
-          high > low ? (std::clamp(values[i], low, high) - low) / (high - low) : 0;
-      steps.push_back(
-          static_cast<Integer>(std::lround(fraction * std::numeric_limits<Integer>::max())));
-    }
-    add(name, components, steps);
-    setRange(name, min, max);
-  }
-
-  /// Adds points in space.
+  /// Adds points, in 2^16 steps of a box.
   void addPoints(const std::string& name, const Positions& points, const Eigen::AlignedBox3d& box) {
-    add<std::uint16_t>(name, 3, numbersOf(points), {box.min().x(), box.min().y(), box.min().z()},
-                       {box.max().x(), box.max().y(), box.max().z()});
+    addSteps<std::uint16_t>(name, points, box.min(), box.max());
   }
 
-  /// Adds points on the unit sphere.
-  void addDirections(const std::string& name, const std::vector<double>& directions) {
-    add<std::uint16_t>(name, 3, directions, {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+  /// Adds a number of each vertex, in 2^8 steps between the bounds between which all but one
+  /// percent at either end are.
+  void addShades(const std::string& name, const Eigen::ArrayXd& values) {
+    const auto [low, high] = robustRange(values);
+    addShades(name, values, low, high);
+  }
+
+  /// Adds powers of two of area, each side of 0 in units of its own end: limbs are squeezed by many
+  /// powers of two, and little is stretched as much.
+  void addArea(const Eigen::ArrayXd& values) {
+    const auto [min, max] = robustRange(values);
+    const double low = std::min(min, -1e-3);
+    const double high = std::max(max, 1e-3);
+    addShades("area", (values < 0.0).select(-values / low, values / high), -1.0, 1.0);
+    about_["area"]["min"] = {low};
+    about_["area"]["max"] = {high};
   }
 
   void addTriangles(const std::string& name, const Triangles& triangles) {
     add(name, 3, std::vector<std::uint32_t>(triangles.data(), triangles.data() + triangles.size()));
   }
 
-  void setRange(const std::string& name, const std::vector<double>& min,
-                const std::vector<double>& max) {
-    about_[name]["min"] = min;
-    about_[name]["max"] = max;
-  }
-
   const Json& about() const { return about_; }
   const std::string& elements() const { return elements_; }
 
 private:
+  template <typename Integer>
+  void addSteps(const std::string& name, const Eigen::MatrixXd& rows, const Eigen::VectorXd& min,
+                const Eigen::VectorXd& max) {
+    std::vector<Integer> steps;
+    steps.reserve(static_cast<std::size_t>(rows.size()));
+    for (Eigen::Index i = 0; i < rows.cols(); ++i) {
+      for (Eigen::Index c = 0; c < rows.rows(); ++c) {
+        const double size = max[c] - min[c];
+        const double fraction =
+            size > 0.0 ? (std::clamp(rows(c, i), min[c], max[c]) - min[c]) / size : 0.0;
+        steps.push_back(
+            static_cast<Integer>(std::lround(fraction * std::numeric_limits<Integer>::max())));
+      }
+    }
+    add(name, static_cast<std::size_t>(rows.rows()), steps);
+    about_[name]["min"] = std::vector<double>(min.begin(), min.end());
+    about_[name]["max"] = std::vector<double>(max.begin(), max.end());
+  }
+
+  void addShades(const std::string& name, const Eigen::ArrayXd& values, double min, double max) {
+    addSteps<std::uint8_t>(name, values.transpose().matrix(), Eigen::VectorXd::Constant(1, min),
+                           Eigen::VectorXd::Constant(1, max));
+  }
+
+  static std::pair<double, double> robustRange(Eigen::ArrayXd values) {
+    std::sort(values.begin(), values.end());
+    const auto cut = static_cast<Eigen::Index>(0.01 * static_cast<double>(values.size() - 1));
+    return {values[cut], values[values.size() - 1 - cut]};
+  }
+
   Json about_ = Json::object();
   std::string elements_;
 };
-
-Eigen::AlignedBox3d boxOf(const Positions& points) {
-  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
-}
-
-/// The bounds between which all but one percent of the values at either end are.
-std::pair<double, double> robustRange(std::vector<double> values) {
-  const auto cut = static_cast<std::ptrdiff_t>(0.01 * static_cast<double>(values.size() - 1));
-  const auto low = values.begin() + cut;
-  std::nth_element(values.begin(), low, values.end());
-  const double min = *low;
-  const auto high = values.end() - 1 - cut;
-  std::nth_element(values.begin(), high, values.end());
-  return {min, *high};
-}
-
-/// Powers of two of area, each side of 0 in units of its own end: limbs are squeezed by many powers
-/// of two, and little is stretched as much.
-void addArea(std::vector<double> values, Arrays& arrays) {
-  auto [low, high] = robustRange(values);
-  low = std::min(low, -1e-3);
-  high = std::max(high, 1e-3);
-  for (double& value : values) {
-    value = value < 0.0 ? -value / low : value / high;
-  }
-  arrays.add<std::uint8_t>("area", 1, values, {-1.0}, {1.0});
-  arrays.setRange("area", {low}, {high});
-}
-
-void addScalar(const std::string& name, const std::vector<double>& values, Arrays& arrays) {
-  const auto [low, high] = robustRange(values);
-  arrays.add<std::uint8_t>(name, 1, values, {low}, {high});
-}
 
 void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.addPoints("positions", mesh.positions, boxOf(mesh.positions));
   arrays.addTriangles("triangles", mesh.triangles);
   arrays.add("suspicious", 1, mesh.marks);
-  if (mesh.sphere.cols() == 0) {
-    return;
+  if (mesh.sphere.cols() > 0) {
+    arrays.addPoints("sphere", mesh.sphere, unit_box);
+    arrays.addArea(mesh.area_distortion);
+    arrays.addShades("angle", mesh.angle_distortion.log10());
+    arrays.addShades("residual", mesh.residual);
   }
-  arrays.addDirections("sphere", numbersOf(mesh.sphere));
-  addArea(mesh.area_distortion, arrays);
-  std::vector<double> angles = mesh.angle_distortion;
-  std::transform(angles.begin(), angles.end(), angles.begin(),
-                 [](double ratio) { return std::log10(ratio); });
-  addScalar("angle", angles, arrays);
-  addScalar("residual", mesh.residual, arrays);
 }
 
 /// Adds the loops of the handles, one after the other, and returns what each of them is.
@@ -205,7 +186,7 @@ Json addHandles(const CloudReconstruction& cloud, const Surface& surface, const 
     handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
   }
   if (!vertices.empty()) {
-    arrays.addPoints("handles", picked(vertexPositions(cloud, surface), vertices),
+    arrays.addPoints("handles", vertexPositions(cloud, surface)(Eigen::all, vertices),
                      boxOf(mesh.positions));
   }
   return handles;
@@ -239,7 +220,6 @@ void addCloud(const CloudReconstruction& cloud, const Surface& surface, const Re
     }
     arrays.add("colors", 3, colors);
   }
-  const Eigen::AlignedBox3d box = boxOf(mesh.positions);
   if (surface.moved().cols() != 0) {
     Positions points = mesh.positions;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -249,14 +229,14 @@ void addCloud(const CloudReconstruction& cloud, const Surface& surface, const Re
   }
   const std::vector<Index>& left_out = cloud.result.left_out.outliers;
   if (!left_out.empty()) {
-    const std::size_t all = left_out.size();
-    const std::size_t count = std::min(all, max_outliers);
+    const std::size_t count = std::min(left_out.size(), max_outliers);
     Positions outliers(3, static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
       outliers.col(static_cast<Eigen::Index>(i)) =
-          cloud.data->position(static_cast<std::size_t>(left_out[i * all / count]));
+          cloud.data->position(static_cast<std::size_t>(left_out[i * left_out.size() / count]));
     }
     // One far off comes to the side of a box around the mesh, where it can be seen.
+    const Eigen::AlignedBox3d box = boxOf(mesh.positions);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
     arrays.addPoints("outliers", outliers, {box.min() - margin, box.max() + margin});
   }
@@ -275,29 +255,29 @@ Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays&
   for (std::size_t i = 0; i < count; ++i) {
     places[i] = static_cast<Index>(i * all / count);
   }
+  const Positions& end = history.frames.back().sphere;
   std::vector<Index> ordered;
   std::vector<Index> vertices;
-  for (const Index i : orderAlongCurve(picked(history.frames.back().sphere, places))) {
+  for (const Index i : internal::mortonOrder(end(Eigen::all, places))) {
     ordered.push_back(places[static_cast<std::size_t>(i)]);
     vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
-  const Positions positions = picked(vertexPositions(cloud, result), vertices);
+  const Positions positions = vertexPositions(cloud, result)(Eigen::all, vertices);
   arrays.addPoints("history_positions", positions, boxOf(positions));
-  arrays.addTriangles("history_triangles",
-                      triangulateSphere(picked(history.frames.back().sphere, ordered)));
-  std::vector<double> directions;
-  directions.reserve(3 * count * history.frames.size());
+  arrays.addTriangles("history_triangles", triangulateSphere(end(Eigen::all, ordered)));
+  const auto width = static_cast<Eigen::Index>(count);
+  Positions directions(3, width * static_cast<Eigen::Index>(history.frames.size()));
   Json frames = Json::array();
   for (const HistoryFrame& frame : history.frames) {
-    const std::vector<double> shown = numbersOf(picked(frame.sphere, ordered));
-    directions.insert(directions.end(), shown.begin(), shown.end());
+    directions.middleCols(width * static_cast<Eigen::Index>(frames.size()), width) =
+        frame.sphere(Eigen::all, ordered);
     frames.push_back({{"level", frame.level},
                       {"nodes", frame.nodes},
                       {"step", nameOf(frame.step)},
                       {"iteration", frame.iteration},
                       {"residual", frame.residual ? Json(*frame.residual) : Json(nullptr)}});
   }
-  arrays.addDirections("history_frames", directions);
+  arrays.addPoints("history_frames", directions, unit_box);
   return frames;
 }
 
@@ -378,16 +358,12 @@ std::string repeatedCommand(const std::string& tool, const CommandLine& command_
   return has_dashes ? command + " --" + words : command;
 }
 
-void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
-                     std::size_t max_triangles) {
+void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
+  const std::string_view page = reportPage();
   const std::size_t place = page.find(marker);
-  if (place == std::string_view::npos) {
-    throw Failure("the page of the report has no place for its data",
-                  "this should not happen: please report it");
-  }
   const CloudReconstruction& cloud = *input.cloud;
   const Surface& surface = *input.surface;
-  const ReportMesh mesh = reportMesh(cloud, surface, max_triangles, input.threads);
+  const ReportMesh mesh = reportMesh(cloud, surface, input.threads);
   Arrays arrays;
   addMesh(mesh, arrays);
   addCloud(cloud, surface, mesh, arrays);

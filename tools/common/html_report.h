@@ -6,16 +6,10 @@
 #include "common/output_file.h"
 #include "common/reconstruction_options.h"
 
-#include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace spherical_param::tools {
-
-/// Triangles of a mesh with a map to the sphere up to which a page shows all of it: it has about
-/// 12 bytes for each.
-inline constexpr std::size_t kMaxReportTriangles = 1000000;
 
 /// The line of -report.
 std::vector<OptionInfo> htmlReportOptions();
@@ -48,11 +42,7 @@ struct HtmlReportInput {
 };
 
 /// Writes a page that opens in a browser without other files or a network.
-///
-/// \param page           the page without its data. \see reportPage()
-/// \param max_triangles of the shown mesh, if it has a sphere.
 /// \throw Failure if it cannot be stored.
-void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
-                     std::size_t max_triangles = kMaxReportTriangles);
+void writeHtmlReport(OutputFile& file, const HtmlReportInput& input);
 
 }  // namespace spherical_param::tools

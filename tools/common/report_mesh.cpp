@@ -1,5 +1,6 @@
 #include "common/report_mesh.h"
 
+#include "space_filling_curve.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 
@@ -17,79 +18,57 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// A triangle in its plane, by its edges from one corner: (length, 0) and (x, height).
-struct InPlane {
-  double length;
-  double x;
-  double height;
+/// A triangle by two of its sides, from the same corner.
+struct Sides {
+  Eigen::Vector3d first;
+  Eigen::Vector3d second;
 
-  InPlane(const Eigen::Vector3d& first, const Eigen::Vector3d& second)
-      : length(first.norm()), x(length > 0.0 ? first.dot(second) / length : second.norm()),
-        height(length > 0.0 ? first.cross(second).norm() / length : 0.0) {}
+  Sides(const Positions& points, const Triangles& triangles, Index t)
+      : first(points.col(triangles(1, t)) - points.col(triangles(0, t))),
+        second(points.col(triangles(2, t)) - points.col(triangles(0, t))) {}
+
+  double twiceArea() const { return first.cross(second).norm(); }
 };
 
 /// sigma_1 / sigma_2 of the linear map from a flat triangle to another.
-double anisotropy(const InPlane& source, const InPlane& image) {
+double anisotropy(const Sides& from, const Sides& to) {
   constexpr double most = 1e6;
-  if (!(source.length > 0.0) || !(source.height > 0.0)) {
-    return most;
-  }
-  const double a = image.length / source.length;
-  const double b = (image.x - a * source.x) / source.height;
-  const double d = image.height / source.height;
-  // sigma_1 + sigma_2 and sigma_1 - sigma_2 are the moduli of the conformal and the anticonformal
-  // part; the determinant, which is their product, does not cancel out.
-  const double sigma_1 = 0.5 * (std::hypot(a + d, b) + std::hypot(a - d, b));
-  const double determinant = a * d;
-  return sigma_1 * sigma_1 < most * determinant ? sigma_1 * sigma_1 / determinant : most;
+  // The trace of the inverse of one metric with the other is sigma_1^2 + sigma_2^2; over the
+  // determinant it is the ratio and its inverse.
+  const double sum = (from.second.squaredNorm() * to.first.squaredNorm() -
+                      2.0 * from.first.dot(from.second) * to.first.dot(to.second) +
+                      from.first.squaredNorm() * to.second.squaredNorm()) /
+                     (from.twiceArea() * to.twiceArea());
+  return sum < most ? sum / 2.0 + std::sqrt(std::max(0.0, sum * sum / 4.0 - 1.0)) : most;
 }
 
 void measureDistortion(ReportMesh& mesh) {
-  const auto n = static_cast<std::size_t>(mesh.positions.cols());
-  std::vector<double> in_space(n, 0.0);
-  std::vector<double> on_sphere(n, 0.0);
-  std::vector<double> weighted(n, 0.0);
-  double all_space = 0.0;
-  double all_sphere = 0.0;
+  Eigen::Array3Xd sums = Eigen::Array3Xd::Zero(3, mesh.positions.cols());
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const auto edges = [&](const Positions& of) {
-      const Eigen::Vector3d corner = of.col(mesh.triangles(0, t));
-      return std::pair<Eigen::Vector3d, Eigen::Vector3d>(of.col(mesh.triangles(1, t)) - corner,
-                                                         of.col(mesh.triangles(2, t)) - corner);
-    };
-    const auto [a, b] = edges(mesh.positions);
-    const auto [c, d] = edges(mesh.sphere);
-    const double area = a.cross(b).norm() / 2.0;
-    const double image = c.cross(d).norm() / 2.0;
-    const double angle = anisotropy(InPlane(a, b), InPlane(c, d));
-    all_space += area;
-    all_sphere += image;
-    for (Index k = 0; k < 3; ++k) {
-      const std::size_t v = at(mesh.triangles(k, t));
-      in_space[v] += area;
-      on_sphere[v] += image;
-      weighted[v] += area * angle;
-    }
+    const Sides in_space(mesh.positions, mesh.triangles, t);
+    const Sides on_sphere(mesh.sphere, mesh.triangles, t);
+    const double area = in_space.twiceArea();
+    const Eigen::Array3d added(area, on_sphere.twiceArea(), area * anisotropy(in_space, on_sphere));
+    for (const Index v : mesh.triangles.col(t))
+      sums.col(v) += added;
   }
   constexpr double least = 1e-300;
-  for (std::size_t v = 0; v < n; ++v) {
-    const double fraction = std::max(in_space[v] / std::max(all_space, least), least);
-    const double image = std::max(on_sphere[v] / std::max(all_sphere, least), least);
-    mesh.area_distortion.push_back(std::log2(image) - std::log2(fraction));
-    mesh.angle_distortion.push_back(in_space[v] > 0.0 ? std::max(1.0, weighted[v] / in_space[v])
-                                                      : 1.0);
-  }
+  const auto logarithms = [&](int row) {
+    return (sums.row(row) / std::max(sums.row(row).sum(), least)).max(least).log();
+  };
+  mesh.area_distortion = (logarithms(1) - logarithms(0)).transpose() / std::log(2.0);
+  mesh.angle_distortion = (sums.row(2) / sums.row(0).max(least)).max(1.0).transpose();
 }
 
 /// log10 of the residual of each vertex. What is not finite counts as 0, which has no logarithm.
-std::vector<double> residualExponents(const Surface& result) {
+Eigen::ArrayXd residualExponents(const Surface& result) {
   constexpr double least = 1e-17;
-  std::vector<double> exponents(result.vertexCount(), std::log10(least));
-  std::transform(result.vertex_residuals.begin(), result.vertex_residuals.end(), exponents.begin(),
-                 [least](double residual) {
-                   return std::log10(std::isfinite(residual) ? std::max(residual, least) : least);
-                 });
-  return exponents;
+  Eigen::ArrayXd residuals =
+      Eigen::ArrayXd::Constant(static_cast<Eigen::Index>(result.vertexCount()), least);
+  for (std::size_t v = 0; v < result.vertex_residuals.size(); ++v)
+    if (std::isfinite(result.vertex_residuals[v]))
+      residuals[static_cast<Eigen::Index>(v)] = std::max(result.vertex_residuals[v], least);
+  return residuals.log10();
 }
 
 /// Marks of the triangles where they are shown.
@@ -115,42 +94,35 @@ std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
 void reduce(std::size_t max_vertices, ReportMesh& mesh) {
   std::vector<std::uint8_t> marks_around(mesh.vertices.size(), 0);
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
-    for (Index k = 0; k < 3; ++k) {
-      std::uint8_t& mark = marks_around[at(mesh.triangles(k, t))];
-      mark = static_cast<std::uint8_t>(mark | mesh.marks[at(t)]);
+    for (const Index v : mesh.triangles.col(t)) {
+      marks_around[at(v)] |= mesh.marks[at(t)];
     }
   }
-  const auto unmarked = static_cast<std::size_t>(
+  auto others = static_cast<std::size_t>(
       std::count(marks_around.begin(), marks_around.end(), std::uint8_t{0}));
-  const std::size_t marked = mesh.vertices.size() - unmarked;
+  const std::size_t marked = mesh.vertices.size() - others;
   const bool keeps_marked = 2 * marked <= max_vertices;
-  const std::size_t others =
-      std::max<std::size_t>(keeps_marked ? unmarked : mesh.vertices.size(), 1);
+  others = keeps_marked ? others : mesh.vertices.size();
   const std::size_t room = keeps_marked ? max_vertices - marked : max_vertices;
   std::vector<Index> kept;
   std::size_t seen = 0;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (keeps_marked && marks_around[v] != 0) {
+    const bool is_other = !keeps_marked || marks_around[v] == 0;
+    // Bresenham's line: `room` of the others at equal distances.
+    if (!is_other || (seen + 1) * room / others != seen * room / others) {
       kept.push_back(static_cast<Index>(v));
-    } else {
-      // Bresenham's line: `room` of the others at equal distances.
-      if ((seen + 1) * room / others != seen * room / others) {
-        kept.push_back(static_cast<Index>(v));
-      }
-      ++seen;
     }
+    seen += is_other ? 1 : 0;
   }
-  std::vector<Index> vertices;
-  vertices.reserve(kept.size());
-  for (const Index v : kept) {
-    vertices.push_back(mesh.vertices[at(v)]);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    mesh.vertices[i] = mesh.vertices[at(kept[i])];
   }
-  mesh.vertices = std::move(vertices);
-  mesh.positions = picked(mesh.positions, kept);
-  mesh.sphere = picked(mesh.sphere, kept);
-  mesh.area_distortion = picked(mesh.area_distortion, kept);
-  mesh.angle_distortion = picked(mesh.angle_distortion, kept);
-  mesh.residual = picked(mesh.residual, kept);
+  mesh.vertices.resize(kept.size());
+  mesh.positions = mesh.positions(Eigen::all, kept).eval();
+  mesh.sphere = mesh.sphere(Eigen::all, kept).eval();
+  for (Eigen::ArrayXd* values : {&mesh.area_distortion, &mesh.angle_distortion, &mesh.residual}) {
+    *values = (*values)(kept).eval();
+  }
   mesh.triangles = triangulateSphere(mesh.sphere);
   mesh.marks.clear();
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -178,55 +150,12 @@ void sortTriangles(ReportMesh& mesh) {
 
 }  // namespace
 
-std::vector<double> picked(const std::vector<double>& values, const std::vector<Index>& indices) {
-  std::vector<double> result;
-  result.reserve(indices.size());
-  for (const Index i : indices) {
-    result.push_back(values[at(i)]);
-  }
-  return result;
-}
-
-Positions picked(const Positions& points, const std::vector<Index>& indices) {
-  return points(Eigen::all, indices);
-}
-
-std::vector<Index> orderAlongCurve(const Positions& points) {
-  // Morton order: the bits of the three coordinates in turn.
-  constexpr int bits = 16;
-  const Eigen::Vector3d low = points.rowwise().minCoeff();
-  const Eigen::Vector3d high = points.rowwise().maxCoeff();
-  std::vector<std::pair<std::uint64_t, Index>> keys;
-  keys.reserve(static_cast<std::size_t>(points.cols()));
-  for (Index v = 0; v < points.cols(); ++v) {
-    std::uint64_t key = 0;
-    for (Index c = 0; c < 3; ++c) {
-      const double fraction =
-          high[c] > low[c] ? std::clamp((points(c, v) - low[c]) / (high[c] - low[c]), 0.0, 1.0)
-                           : 0.0;
-      const auto place = static_cast<std::uint64_t>(fraction * ((1 << bits) - 1));
-      for (unsigned bit = 0; bit < bits; ++bit) {
-        key |= (place >> bit & 1U) << (3 * bit + static_cast<unsigned>(c));
-      }
-    }
-    keys.emplace_back(key, v);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<Index> order;
-  order.reserve(keys.size());
-  for (const auto& [key, v] : keys) {
-    order.push_back(v);
-  }
-  return order;
-}
-
-ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result,
-                      std::size_t max_triangles, int threads) {
+ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result, int threads) {
   const bool has_sphere = result.sphere.cols() > 0;
   const Positions positions = vertexPositions(cloud, result);
   ReportMesh mesh;
-  mesh.vertices = orderAlongCurve(has_sphere ? result.sphere : positions);
-  mesh.positions = picked(positions, mesh.vertices);
+  mesh.vertices = internal::mortonOrder(has_sphere ? result.sphere : positions);
+  mesh.positions = positions(Eigen::all, mesh.vertices);
   std::vector<Index> place_of(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     place_of[at(mesh.vertices[i])] = static_cast<Index>(i);
@@ -234,11 +163,11 @@ ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result,
   mesh.triangles = result.triangles.unaryExpr([&place_of](Index v) { return place_of[at(v)]; });
   mesh.marks = marksOf(result, threads);
   if (has_sphere) {
-    mesh.sphere = picked(result.sphere, mesh.vertices);
-    mesh.residual = picked(residualExponents(result), mesh.vertices);
+    mesh.sphere = result.sphere(Eigen::all, mesh.vertices);
+    mesh.residual = residualExponents(result)(mesh.vertices);
     measureDistortion(mesh);
-    if (static_cast<std::size_t>(mesh.triangles.cols()) > max_triangles) {
-      reduce(max_triangles / 2 + 2, mesh);
+    if (static_cast<std::size_t>(mesh.triangles.cols()) > kMaxReportTriangles) {
+      reduce(kMaxReportTriangles / 2 + 2, mesh);
     }
   }
   sortTriangles(mesh);

@@ -18,24 +18,18 @@ struct ReportMesh {
   /// v entries each, none without a sphere: log2 of the fraction of the sphere around a vertex over
   /// that of the surface; sigma_1 / sigma_2 of the map, mean; log10 of the tangential Laplacian
   /// [radius], at least -17.
-  std::vector<double> area_distortion;
-  std::vector<double> angle_distortion;
-  std::vector<double> residual;
+  Eigen::ArrayXd area_distortion;
+  Eigen::ArrayXd angle_distortion;
+  Eigen::ArrayXd residual;
   std::vector<std::uint8_t> marks;  ///< t entries, bits of triangle_mark
 };
 
-/// The entries of a list, or columns of points, at some indices.
-std::vector<double> picked(const std::vector<double>& values, const std::vector<Index>& indices);
-Positions picked(const Positions& points, const std::vector<Index>& indices);
+/// Triangles of a mesh with a sphere up to which all of it is shown: the page has about 12 bytes
+/// for each.
+inline constexpr std::size_t kMaxReportTriangles = 1000000;
 
-/// The indices of points along a curve that fills their box: neighbours are near each other in this
-/// order.
-std::vector<Index> orderAlongCurve(const Positions& points);
-
-/// Shows a result that was made with Options::details by a limited number of triangles: of a larger
-/// mesh a part of the vertices, spread over the sphere and triangulated there. A mesh without a
-/// sphere is shown as a whole.
-ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& surface,
-                      std::size_t max_triangles, int threads);
+/// Shows a result that was made with Options::details: of a large mesh a part of the vertices,
+/// spread over the sphere and triangulated there. A mesh without a sphere is shown as a whole.
+ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& surface, int threads);
 
 }  // namespace spherical_param::tools

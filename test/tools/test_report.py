@@ -1,0 +1,274 @@
+#!/usr/bin/python3
+"""The page of -report, taken apart by code of its own: test_report.py FOLDER_OF_THE_TOOLS"""
+
+import base64
+import json
+import os
+import pathlib
+import re
+import resource
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+import numpy as np
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from draw import read_ply  # noqa: E402
+
+TOOLS = pathlib.Path(sys.argv.pop()).resolve()
+STEP = 1 / 65535  # of the numbers in 16 bits
+SPHERE = "-topology", "sphere"
+
+
+def run(tool, *words, code=0, **more):
+    """What a tool prints."""
+    done = subprocess.run([f"{TOOLS}/pcl_spherical_param_{tool}", *map(str, words)], capture_output=True, text=True,
+                          check=False, **more)  # fmt: skip
+    assert done.returncode == code, (words, done.returncode, done.stderr)
+    return done.stdout + done.stderr
+
+
+class Page:
+    def __init__(self, name="page.html"):
+        self.html = pathlib.Path(name).read_text()
+        texts = dict(re.findall(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>', self.html))
+        unpacked = {name: zlib.decompress(base64.b64decode(text)) for name, text in texts.items()}
+        self.data = json.loads(unpacked["data"])
+        self.texts = {name: texts[f"array-{name}"] for name in self.data["arrays"]}
+        self.integers, self.arrays = {}, {}
+        for name, about in self.data["arrays"].items():
+            kind = np.dtype(f"<u{about['bits'] // 8}")
+            rows = np.frombuffer(unpacked[f"array-{name}"], kind).reshape(-1, about["components"])
+            self.integers[name] = rows = np.cumsum(rows, axis=0, dtype=kind)  # stored are differences
+            if "min" in about:
+                low, high = np.array(about["min"]), np.array(about["max"])
+                self.arrays[name] = low + rows / (2 ** about["bits"] - 1) * (high - low)
+
+    def share(self, name):
+        """Of the range of a colouring, in [0, 1]."""
+        return self.integers[name][:, 0] / 255
+
+
+def nearest(points, others):
+    """Of each point the index of the nearest of others."""
+    return np.array([((others - point) ** 2).sum(axis=1).argmin() for point in points])
+
+
+def areas(points, triangles):
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def in_plane(points, triangles):
+    """Of each triangle its first side (length, 0) and its second (x, height)."""
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    length = np.linalg.norm(b - a, axis=1)
+    return length, ((b - a) * (c - a)).sum(axis=1) / length, 2 * areas(points, triangles) / length
+
+
+def around(values, triangles, count):
+    """The sums of the triangles' values around the vertices."""
+    return np.bincount(triangles.ravel(), np.repeat(values, 3), count)
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        run("scan", "ellipsoid", "in.ply", "-points", 300)
+
+    def page(self, shape, points, *options):
+        """Of a generated scan, with its mesh out.ply."""
+        run("scan", shape, "scan.ply", "-points", points)
+        run("reconstruction", "scan.ply", "out.ply", "-report", "page.html", "-quiet", *options)
+        return Page()
+
+    def check(self, page):
+        """The page has the mesh and the sphere that were written. The vertices of these in the order of the page."""
+        (points, _, triangles), (sphere, _, _) = read_ply("out.ply"), read_ply("sphere.ply")
+        order = nearest(page.arrays["positions"], points)
+        self.assertEqual(sorted(order), list(range(len(points))))
+        self.assertLessEqual((np.abs(page.arrays["positions"] - points[order]) / np.ptp(points, axis=0)).max(), 0.51 * STEP)
+        self.assertLessEqual(np.abs(page.arrays["sphere"] - sphere[order]).max(), 1.01 * STEP)
+        self.assertEqual(*({tuple(np.roll(row, -row.argmin())) for row in rows}
+                           for rows in (order[page.integers["triangles"]], triangles)))  # fmt: skip
+        for name, count in (("vertices", len(points)), ("triangles", len(triangles))):
+            self.assertEqual([page.data["mesh"][name], page.data["mesh"][f"shown_{name}"]], [count, count])
+        self.check_sphere(page.integers["history_triangles"], len(page.arrays["history_positions"]))
+        self.assertEqual(len(page.arrays["history_frames"]),
+                         len(page.arrays["history_positions"]) * len(page.data["frames"]))  # fmt: skip
+        self.assertEqual(page.data["frames"][-1]["step"], "end")
+        return points, sphere, triangles, order
+
+    def check_sphere(self, triangles, count):
+        """Closed and oriented, over all vertices, with the Euler characteristic of a sphere."""
+        sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64) @ [count, 1]
+        back = triangles[:, [[1, 0], [2, 1], [0, 2]]].reshape(-1, 2).astype(np.int64) @ [count, 1]
+        self.assertTrue(np.array_equal(np.unique(sides), np.sort(back)))
+        self.assertEqual([len(triangles), len(np.unique(triangles))], [2 * count - 4, count])
+
+    def test_mesh_marks_and_distortion_are_on_the_page_up_to_rounding(self):
+        page = self.page("bowl", 2000, *SPHERE, "-sphere", "sphere.ply")
+        points, sphere, triangles, order = self.check(page)
+        holes = page.integers["triangles"][page.integers["suspicious"][:, 0] & 2 != 0]
+        self.assertGreater(len(holes), 10)
+        self.assertGreater(page.arrays["positions"][holes][:, :, 2].min(), 0)  # at the top
+        self.assertFalse({"cloud", "colors", "outliers"} & set(page.integers))
+        (length, x, height), (to, to_x, to_height) = in_plane(points, triangles), in_plane(sphere, triangles)
+        a, b, d = to / length, (to_x - to / length * x) / height, to_height / height
+        greater = (np.hypot(a + d, b) + np.hypot(a - d, b)) / 2
+        weights, count = areas(points, triangles), len(points)
+        of_vertex = around(weights, triangles, count)
+        angles = np.log10(around(weights * greater**2 / (a * d), triangles, count) / of_vertex)[order]
+        image = areas(sphere, triangles)
+        ratios = np.log2(around(image, triangles, count) / image.sum() / of_vertex * weights.sum())[order]
+        about = page.data["arrays"]
+        low, high = about["angle"]["min"][0], about["angle"]["max"][0]
+        ends = np.where(ratios < 0, -about["area"]["min"][0], about["area"]["max"][0])
+        for name, share in (("angle", (angles - low) / (high - low)), ("area", (ratios / ends + 1) / 2)):
+            # Files in single precision round a few small triangles of the sphere.
+            off = np.abs(page.share(name) - np.clip(share, 0, 1))
+            self.assertLess(np.quantile(off, 0.98), 0.51 / 255, name)
+        # Of the vertices of the mesh instead of the graph's: of the same order.
+        residual = (10 ** page.arrays["residual"]).mean()
+        self.assertAlmostEqual(np.log10(residual / page.data["report"]["embedding"]["residual"]), 0, delta=1.5)
+
+    def test_a_mesh_with_handles_has_their_loops_and_no_sphere(self):
+        page = self.page("torus", 1500)
+        report = page.data["report"]
+        self.assertEqual([report["genus"], len(report["handles"])], [1, 1])
+        self.assertEqual(set(page.integers), {"positions", "triangles", "suspicious", "handles"})
+        self.assertEqual([page.data["sphere_turn"], page.data["frames"]], [None, []])
+        self.assertEqual(page.data["handles"], [{"points": len(page.arrays["handles"]), "is_cut": False}])
+        loop = read_ply("scan.ply")[0][report["handles"][0]["loop"]]
+        self.assertLess(np.abs(page.arrays["handles"] - loop).max(), 1e-4)  # the extent is about 1
+
+    def test_the_history_ends_at_the_sphere_and_begins_elsewhere(self):
+        for options in (SPHERE, ("-method", "paper")):
+            page = self.page("head", 1500, "-sphere", "sphere.ply", *options)
+            points, sphere, _, _ = self.check(page)
+            frames = np.split(page.arrays["history_frames"], len(page.data["frames"]))
+            at = nearest(page.arrays["history_positions"], points)
+            self.assertLessEqual(np.abs(frames[-1] - sphere[at]).max(), 1.01 * STEP)
+            self.assertGreater(np.abs(frames[-1] - frames[0]).max(), 0.1)
+
+    def test_smoothed_points_outliers_and_colours_are_shown(self):
+        run("scan", "head", "scan.xyz", "-points", 1500)
+        far = [(x, 0.1 * i, -2) for i, x in enumerate((0.9, 3, 3, 3, 3, 3))]
+        points = np.concatenate([np.loadtxt("scan.xyz"), far])
+        colors = np.stack([np.arange(1506) % 251, np.arange(1506) // 251, 255 - np.arange(1506) % 13], axis=1)
+        np.savetxt("colors.xyz", np.concatenate([points, colors], axis=1), fmt="%.9g")
+        run("reconstruction", "colors.xyz", "out.ply", "-columns", "x,y,z,red,green,blue", *SPHERE, "-outliers", 4,
+            "-smoothing", 5, "-sphere", "sphere.ply", "-report", "page.html", "-quiet")  # fmt: skip
+        page = Page()
+        self.check(page)
+        at = nearest(page.arrays["cloud"], points)
+        self.assertLess(np.abs(page.arrays["cloud"] - points[at]).max(), 1e-4)
+        self.assertTrue(np.array_equal(page.integers["colors"], colors[at]))
+        # Those that are far off come to the side of a box that is as much larger than the mesh as its diagonal is
+        # long, in its middle.
+        mesh = page.arrays["positions"]
+        high = mesh.max(axis=0) + np.linalg.norm(np.ptp(mesh, axis=0)) / 2
+        self.assertLess(high[0], 3)
+        self.assertEqual(page.data["outliers"], 6)
+        self.assertLess(np.abs(page.arrays["outliers"][:, 0] - np.minimum([p[0] for p in far], high[0])).max(), 1e-4)
+
+    def test_arrays_are_the_same_for_any_number_of_threads(self):
+        first, *others = [self.page("animal", 2000, *SPHERE, "-smoothing", 2, "-threads", threads).texts
+                          for threads in (1, 2, 3)]  # fmt: skip
+        self.assertTrue(all(other == first for other in others))
+
+    def test_a_large_mesh_is_reduced_and_has_twelve_bytes_a_triangle(self):
+        # A golden-angle spiral with a small hole.
+        z = 1 - (2 * np.arange(507000) + 1) / 507000
+        angles = np.pi * (3 - 5**0.5) * np.arange(len(z))
+        points = np.stack([np.sqrt(1 - z**2) * np.cos(angles), np.sqrt(1 - z**2) * np.sin(angles), z], axis=1)
+        np.savetxt("large.xyz", points[z < 0.99], fmt="%.7f")
+        run("reconstruction", "large.xyz", "out.ply", "-report", "page.html", "-quiet", *SPHERE)
+        page = Page()
+        self.assertGreater(page.data["mesh"]["triangles"], 1000000)
+        self.assertEqual(page.data["mesh"]["shown_triangles"], 1000000)
+        self.check_sphere(page.integers["triangles"], 500002)
+        self.assertGreater((page.integers["suspicious"] & 2 != 0).sum(), 10)
+        points, _, triangles = read_ply("out.ply")
+        whole = areas(points, triangles).sum()
+        self.assertAlmostEqual(areas(page.arrays["positions"], page.integers["triangles"]).sum() / whole, 1, delta=0.01)
+        size = sum(len(text) for name, text in page.texts.items() if not name.startswith("history"))
+        self.assertLess(size, 13.5e6)
+
+    def test_the_spacing_is_that_of_the_points(self):
+        page = self.page("bird", 1500, *SPHERE, "-smoothing", 5)
+        points = read_ply("scan.ply")[0]
+        distances = [np.partition(((points - point) ** 2).sum(axis=1), 1)[1] ** 0.5 for point in points]
+        self.assertTrue(np.median(distances) < page.data["spacing"] < 2 * np.median(distances))
+
+    def test_tiny_clouds_have_a_page(self):
+        for points in (4, 5, 12):
+            self.check(self.page("sphere", points, *SPHERE, "-sphere", "sphere.ply"))
+
+    def test_what_is_no_page_is_refused_and_a_full_disk_leaves_nothing_behind(self):
+        for name in ("", "-", "page", "page.htm", "page.json", ".html", "in.ply"):
+            self.assertIn("-report", run("reconstruction", "in.ply", "out.ply", f"-report={name}", code=2))
+        for words, code, cause in ((["no/page.html"], 1, "missing directory"),
+                                   (["r.html", "-json", "r.html"], 2, "would overwrite")):  # fmt: skip
+            self.assertIn(cause, run("reconstruction", "in.ply", "out.ply", "-report", *words, code=code))
+        limit = 100000  # room for the mesh, not for the page
+        said = run("reconstruction", "in.ply", "out.ply", "-report", "page.html", code=1,
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))  # fmt: skip
+        self.assertIn("cannot write 'page.html'", said)
+        self.assertEqual(os.listdir(), ["in.ply"])
+
+    def test_the_page_loads_nothing_and_holds_the_report_of_json(self):
+        names = "a </script><!-- \"it's\" &.ply", "b </script>.ply"
+        for name in names:
+            pathlib.Path(name).parent.mkdir()
+        pathlib.Path("in.ply").rename(names[0])
+        options = ["-starts=7", "-smoothing", "2", "-report", "page.HTML", "-json", "report.json", "-quiet"]
+        run("reconstruction", *names, *options)
+        page = Page("page.HTML")
+        self.assertIn("content=\"default-src 'none'; script-src 'sha256-", page.html)
+        for text in ("three.js authors", "Permission is hereby granted, free of charge"):
+            self.assertIn(text, page.html)
+        # Nothing but the elements of program, data and arrays is where the data are.
+        data = page.html[page.html.index('<script type="text/plain"') : page.html.index("<script>")]
+        self.assertEqual(data.count("<"), 2 * len(page.texts) + 4)
+        report, expected = page.data["report"], json.loads(pathlib.Path("report.json").read_text())
+        self.assertEqual([report["input"], report["output"], report["options"]["report"]], [*names, "page.HTML"])
+        self.assertEqual(expected["stages"][-1]["name"], "report")
+        self.assertEqual(*({**one, "stages": None, "peak_memory_bytes": None} for one in (report, expected)))
+        self.assertEqual(shlex.split(page.data["command"]), ["pcl_spherical_param_reconstruction", *names, "-starts", "7",
+                         "-smoothing", "2", "-seed", "1", *options[3:]])  # fmt: skip
+
+    def test_the_command_repeats_the_run(self):
+        os.rename("in.ply", "-it's in.ply")
+        for options in (["-seed", "3", "-outliers", "9"], ["-method", "paper", "-max-iterations", "20"]):
+            words = [*options, "-sphere", "s.ply", "--", "-it's in.ply", "out.ply"]
+            run("reconstruction", *words)  # without a page
+            before = [pathlib.Path(name).read_bytes() for name in ("out.ply", "s.ply")]
+            said = run("reconstruction", "-report", "page.html", *words)
+            self.assertIn("\nwritten   out.ply, s.ply, page.html\n", said)
+            first = Page()
+            for repeat in range(2):
+                self.assertEqual([pathlib.Path(name).read_bytes() for name in ("out.ply", "s.ply")], before)
+                if repeat == 0:
+                    run("reconstruction", *shlex.split(first.data["command"])[1:])
+            self.assertEqual([Page().texts, Page().data["command"]], [first.texts, first.data["command"]])
+
+
+def setUpModule():
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([f"{TOOLS}/pcl_spherical_param_reconstruction", f"{folder}/none.ply", f"{folder}/out.ply",
+                               f"-report={folder}/page.html"], capture_output=True, text=True, check=False)  # fmt: skip
+    if "built without the page" in done.stderr:
+        raise unittest.SkipTest("this build has no page of the report")
+
+
+if __name__ == "__main__":
+    unittest.main()
