@@ -143,34 +143,32 @@ function findFlags(marks, triangles) {
 /** The way to colour by at first: faults are not to be overlooked. */
 const firstMode = (kinds) => (kinds.every((kind) => kind.harmless) ? 'place' : 'suspicious');
 
-function showFlags(kinds, views, select) {
+/** A button that leads to one place after the other. */
+function tour(attributes, color, text, places, lookAt) {
+  let next = 0;
+  return make('button', { type: 'button', ...attributes, onclick: () => {
+    lookAt(places[next % places.length]);
+    ++next;
+  } }, make('span', { class: 'swatch', style: { background: color } }), text);
+}
+
+/** Buttons that lead to suspicious triangles and to the handles, those of the mesh and the cut. */
+function showPlaces(kinds, views, select) {
   byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
-    ...kinds.map((kind) => {
-      let next = 0;
-      return make('button', { type: 'button', 'data-bit': kind.bit, onclick: () => {
+    ...kinds.map((kind) => tour({ 'data-bit': kind.bit }, kind.color,
+      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ` +
+        counted(kind.places.length, 'place'), kind.places, ([triangle]) => {
         select('suspicious');
         // A triangle may be of several kinds.
         views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
-        views.lookAt(views.triangles[3 * kind.places[next % kind.places.length][0]]);
-        ++next;
-      } }, make('span', { class: 'swatch', style: { background: kind.color } }),
-      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ` +
-        counted(kind.places.length, 'place'));
-    }));
-}
-
-/** Buttons that lead to the handles, those of the mesh and those that are cut. */
-function showHandles(views) {
+        views.lookAt(views.triangles[3 * triangle]);
+      })));
   for (const [is_cut, name, color] of [
     [false, 'Handle', handle_color], [true, 'Possible handle, cut', cut_handle_color]]) {
-    const handles = views.handles.filter((handle) => handle.is_cut === is_cut);
-    if (handles.length === 0) continue;
-    let next = 0;
-    byId('flags').append(make('button', { type: 'button', class: 'handles', onclick: () => {
-      views.lookAtHandle(handles[next % handles.length]);
-      ++next;
-    } }, make('span', { class: 'swatch', style: { background: color } }),
-    `${name}: ${counted(handles.length, 'loop')}`));
+    const loops = views.handles.filter((handle) => handle.is_cut === is_cut);
+    if (loops.length === 0) continue;
+    byId('flags').append(tour({ class: 'handles' }, color,
+      `${name}: ${counted(loops.length, 'loop')}`, loops, (loop) => views.lookAtHandle(loop)));
   }
 }
 
@@ -278,12 +276,11 @@ function showViews(data, arrays, context) {
       if (was_result !== (frame === null) || byId('legend').childElementCount === 0) paint();
     });
   }
-  showFlags(kinds, views, (key) => {
+  showPlaces(kinds, views, (key) => {
     seek(data.frames.length);
     select.value = key;
     paint();
   });
-  showHandles(views);
   paint();
 }
 
