@@ -106,17 +106,16 @@ def direction_colors(points):
     return 0.66 + 0.32 * away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-300)
 
 
-def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None, zoom=1.0, edges=False, back=False):
+def draw_view(axes, points, colors, triangles, view=(25, 20), focus=None, zoom=1.0, edges=False, back=False):
     """Draws one cloud or mesh; azimuth and elevation of the view in degrees."""
-    turn = {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}[up]
     a, e = np.radians(view)
     camera = np.array([[np.cos(a), np.sin(a), 0.0],
                        [-np.sin(a) * np.sin(e), np.cos(a) * np.sin(e), np.cos(e)],
                        [np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)]])  # fmt: skip
-    seen = points[:, turn] @ camera.T
+    seen = points @ camera.T
     colors = np.broadcast_to(np.array([0.74, 0.79, 0.86]) if colors is None else colors, points.shape)
     low, high = seen.min(axis=0), seen.max(axis=0)
-    middle = (low + high)[:2] / 2 if focus is None else (camera @ np.asarray(focus, float)[turn])[:2]
+    middle = (low + high)[:2] / 2 if focus is None else (camera @ np.asarray(focus, float))[:2]
     box = axes.get_window_extent()
     unit = max((high - low)[0] / box.width, (high - low)[1] / box.height, 1e-300) / (0.94 * zoom)
     half = np.array([box.width, box.height]) * unit / 2
@@ -191,7 +190,6 @@ def main(arguments=None):
     parser.add_argument("--colors", metavar="FILE", help="colour each point by the direction of the same point of "
                         "FILE, in all files with as many points")  # fmt: skip
     parser.add_argument("--view", action="append", type=numbers, metavar="AZ,EL", help="degrees (default 25,20)")
-    parser.add_argument("--up", choices="xyz", default="z", help="axis that points up (default z)")
     parser.add_argument("--focus", action="append", type=numbers, metavar="X,Y,Z", help="middle of the view")
     parser.add_argument("--zoom", action="append", type=numbers, metavar="F", help="times larger (default 1)")
     parser.add_argument("--edges", action="store_true", help="draw the edges of the triangles")
@@ -211,7 +209,7 @@ def main(arguments=None):
         views = []
         for i, path in enumerate(words.files):
             points, colors, triangles = read_ply(path)
-            view = {"points": points, "triangles": triangles, "up": words.up, "edges": words.edges, "back": words.back,
+            view = {"points": points, "triangles": triangles, "edges": words.edges, "back": words.back,
                     "colors": tints if len(tints) == len(points) else colors}  # fmt: skip
             for name in ("view", "focus", "zoom"):
                 if getattr(words, name):

@@ -121,8 +121,7 @@ void parse(const CommandLine& command_line, Settings& settings) {
   checkNumbers(settings);
   if (!settings.page.empty()) {
     keepForHtmlReport(settings.reconstruction);
-    settings.command = repeatedCommand(toolText().name, command_line, optionsOf(settings), files,
-                                       settings.reconstruction);
+    settings.command = repeatedCommand(toolText().name, command_line.words());
   }
 }
 

@@ -243,8 +243,7 @@ class Report(unittest.TestCase):
         self.assertEqual([report["input"], report["output"], report["options"]["report"]], [*names, "page.HTML"])
         self.assertEqual(expected["stages"][-1]["name"], "report")
         self.assertEqual(*({**one, "stages": None, "peak_memory_bytes": None} for one in (report, expected)))
-        self.assertEqual(shlex.split(page.data["command"]), ["pcl_spherical_param_reconstruction", *names, "-starts", "7",
-                         "-smoothing", "2", "-seed", "1", *options[3:]])  # fmt: skip
+        self.assertEqual(shlex.split(page.data["command"]), ["pcl_spherical_param_reconstruction", *names, *options])
 
     def test_the_command_repeats_the_run(self):
         os.rename("in.ply", "-it's in.ply")

@@ -195,7 +195,8 @@ std::string describeOptions(const OptionTable& options, bool with_experts) {
   return text;
 }
 
-CommandLine::CommandLine(const std::vector<std::string>& words, OptionTable options) {
+CommandLine::CommandLine(const std::vector<std::string>& words, OptionTable options)
+    : words_(words) {
   for (const char* name : {"h", "help", "version"}) {
     options.push_back({name, "", ""});
   }

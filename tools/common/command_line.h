@@ -115,6 +115,8 @@ public:
   std::string value(const std::string& option, const std::string& fallback) const {
     return has(option) ? values_.at(option) : fallback;
   }
+  /// All words, as they were given.
+  const std::vector<std::string>& words() const { return words_; }
   /// The words that belong to no option, in their order.
   const std::vector<std::string>& others() const { return others_; }
 
@@ -125,6 +127,7 @@ public:
               const std::string& instead) const;
 
 private:
+  std::vector<std::string> words_;
   std::map<std::string, std::string> values_;
   std::vector<std::string> others_;
 };

@@ -325,37 +325,12 @@ void keepForHtmlReport(ReconstructionSettings& settings) {
   settings.options.details = true;
 }
 
-std::string repeatedCommand(const std::string& tool, const CommandLine& command_line,
-                            const std::vector<OptionInfo>& options,
-                            const std::vector<std::string>& files,
-                            const ReconstructionSettings& settings) {
+std::string repeatedCommand(const std::string& tool, const std::vector<std::string>& words) {
   std::string command = tool;
-  const Json seed = reconstructionOptionsToJson(settings)["seed"];
-  const bool has_dashes = std::any_of(files.begin(), files.end(), [](const std::string& file) {
-    return !file.empty() && file[0] == '-';
-  });
-  std::string words;
-  for (const std::string& file : files) {
-    words += " " + shellWord(file);
+  for (const std::string& word : words) {
+    command += " " + shellWord(word);
   }
-  if (!has_dashes) {
-    command += words;
-  }
-  for (const OptionInfo& option : options) {
-    if (!command_line.has(option.name)) {
-      if (option.name == "seed" && seed.is_number()) {
-        command += " -seed " + seed.dump();
-      }
-      continue;
-    }
-    const std::string value = command_line.value(option.name, "");
-    command += " -" + option.name;
-    if (!option.argument.empty()) {
-      // A value that looks like an option has to be joined to its own.
-      command += (value.empty() || value[0] == '-' ? "=" : " ") + shellWord(value);
-    }
-  }
-  return has_dashes ? command + " --" + words : command;
+  return command;
 }
 
 void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {

@@ -21,15 +21,8 @@ std::string parseHtmlReport(const CommandLine& command_line);
 /// Makes a reconstruction keep the data of a page.
 void keepForHtmlReport(ReconstructionSettings& settings);
 
-/// A command line that repeats the run, for a POSIX shell: the program, its options, and the seed
-/// if it matters.
-///
-/// \param files    of the run, in any order.
-/// \param settings parsed from the command line.
-std::string repeatedCommand(const std::string& tool, const CommandLine& command_line,
-                            const std::vector<OptionInfo>& options,
-                            const std::vector<std::string>& files,
-                            const ReconstructionSettings& settings);
+/// The command line that repeats the run, for a POSIX shell.
+std::string repeatedCommand(const std::string& tool, const std::vector<std::string>& words);
 
 /// The data of a page.
 struct HtmlReportInput {
