@@ -7,10 +7,10 @@ import bz2
 import dataclasses
 import pathlib
 
+import draw
 import numpy as np
 
 from .comparison import compare, find_peers
-from .drawing import Pictures, vertices
 from .programs import Cloud, Failure
 
 PEERS = ("PCL Poisson", "PCL greedy projection", "Open3D ball pivoting")
@@ -71,12 +71,12 @@ def _read(row, work):
     if path.suffix == ".bz2":
         packed, path = path, work / path.stem
         path.write_bytes(bz2.decompress(packed.read_bytes()))
-    return vertices(path)
+    return draw.read_ply(path)[0]
 
 
 def _generate(row, programs):
     name, noise, strays = row.scan
-    points = vertices(programs.scan(name, noise, truth=False).points)
+    points = draw.read_ply(programs.scan(name, noise, truth=False).points)[0]
     low, high = points.min(axis=0), points.max(axis=0)
     random = np.random.default_rng(1).random((len(points) * strays // 100, 3))
     points = np.concatenate([points, low + random * (high - low)])
@@ -116,9 +116,8 @@ def _cloud(context, row):
 def _draw(path, files, captions, view):
     from PIL import Image
 
-    pictures = Pictures(path, size=360)
-    pictures.row(files, captions, view=[view], switches=["--back"])
-    pictures.save()
+    draw.main([str(path), *map(str, files), f"--size={360 * len(files)}x360", f"--view={view[0]},{view[1]}", "--back",
+               *(f"--caption={caption}" for caption in captions)])  # fmt: skip
     # 256 colours are enough, for a third of the bytes. Without dithering shades become patches.
     image = Image.open(path).convert("RGB")
     colors = image.quantize(256, method=Image.Quantize.FASTOCTREE)  # keeps white and orange

@@ -8,14 +8,9 @@ import re
 import subprocess
 
 
-def _memory(name):
-    """Bytes of an entry of Linux."""
+def memory(name):
+    """Bytes, of an entry of Linux such as MemTotal."""
     return 1024 * int(re.search(rf"^{name}:\s*(\d+) kB", pathlib.Path("/proc/meminfo").read_text(), re.MULTILINE)[1])
-
-
-def available_memory():
-    """Bytes that a process can use now."""
-    return _memory("MemAvailable")
 
 
 def _output(*command):
@@ -31,6 +26,6 @@ def describe(root, build):
     return (
         f"Measured at commit `{commit}`{' with changes that are not committed' if changed else ''} on "
         f"{datetime.date.today().isoformat()}: {processor[1].strip() if processor else 'unknown'}, "
-        f"{len(os.sched_getaffinity(0))} cores, {_memory('MemTotal') / 2**30:.0f} GiB, "
+        f"{len(os.sched_getaffinity(0))} cores, {memory('MemTotal') / 2**30:.0f} GiB, "
         f"{platform.freedesktop_os_release()['PRETTY_NAME']}, {_output(compiler, '--version').splitlines()[0]}."
     )

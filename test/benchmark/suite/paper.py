@@ -2,7 +2,11 @@
 
 import json
 
-from .drawing import Pictures, close_up, plot, vertices
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen first
+
 from .programs import PAPER, Failure, in_turn, median_seconds
 
 WEIGHTS = ("uniform", "inverse", "adaptive")
@@ -43,13 +47,8 @@ RESIDUALS = [
      {centroid:.2f} radii), so that the iteration settles where this shift and its steps cancel, at {settled:.1e} for
      adaptive weights. Newton's method has no such shift: the energy itself keeps the sphere from collapsing."""),
 ]  # fmt: skip
-# Figure 10: rows of pictures by method, smoothing, caption and options.
-NOISE_ROWS = [
-    ("default", "", "b = {}", {"switches": ["--edges"], "zoom": [(2.5,)]}),
-    ("default", "", "b = {}, flat shaded", {}),
-    ("default", "smooth_", "b = {}, 5 steps of smoothing", {}),
-    ("paper's iteration", "smooth_", "b = {}, the paper's way, 5 steps", {}),
-]
+# Colours that differ for colour-blind readers as well (Okabe and Ito 2008).
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 
 
 def table1(context):
@@ -82,6 +81,22 @@ def table1(context):
     context.report.table("table1", TABLE1, rows)
 
 
+def _plot(path, curves, title):
+    """Residuals over iterations, by their labels; those of the default are dashed."""
+    figure, axes = plt.subplots(figsize=(6.0, 4.0))
+    for color, (label, values) in zip(COLORS, curves.items()):
+        style = {"linestyle": "--", "marker": "o"} if label in NEWTON else {}
+        axes.plot(range(1, len(values) + 1), values, color=color, label=label, markersize=4, linewidth=1.4, **style)
+    axes.set(xlabel="iteration + 1", ylabel="mean tangential Laplacian [radius]", xscale="log", yscale="log")
+    axes.set_title(title, fontsize=10)
+    axes.grid(True, alpha=0.3)
+    axes.legend(fontsize=8)
+    # Without date and random identifiers: the same data give the same file.
+    matplotlib.rcParams["svg.hashsalt"] = path.stem
+    figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
+    plt.close(figure)
+
+
 def figures6_and_7(context):
     """The mean tangential Laplacian over the iterations."""
     context.report.text("### Figures 6 and 7: does the tangential Laplacian vanish?")
@@ -92,39 +107,23 @@ def figures6_and_7(context):
             limit = ("-max-iterations", iterations) if options[: len(PAPER)] == PAPER else ()
             report = context.programs.reconstruct(cloud, context.work / "residuals.ply", *options, *limit)[1]
             ends[label] = report["embedding"]
-        picture = plot(context.out / f"{name}.svg", {label: end["residuals"] for label, end in ends.items()},
-                       "iteration + 1", "mean tangential Laplacian [radius]", f"{title}, {scan}")  # fmt: skip
-        context.report.picture(picture, title)
+        _plot(context.out / f"{name}.svg", {label: end["residuals"] for label, end in ends.items()}, f"{title}, {scan}")
+        context.report.picture(f"{name}.svg", title)
         *_, iteration, default = ends.values()
         text = text.format(settled=iteration["residual"], centroid=default["centroid_norm"])
         context.report.text(f"**{title}, {scan}.** {' '.join(text.split())}")
 
 
-def _maps_by_methods(context, name, cloud, tip, methods, columns, view):
-    """Meshes and maps by some methods, as a table and as pictures, also close up where a point of the cloud is."""
-    meshes, spheres, rows = [], [], []
-    for index, (method, options) in enumerate(methods.items()):
-        mesh = context.work / f"{name}_{index}.ply"
-        sphere = context.work / f"{name}_{index}_sphere.ply"
+def _maps_by_methods(context, name, cloud, methods, columns):
+    """A table of meshes and maps."""
+    mesh, sphere = context.work / f"{name}.ply", context.work / f"{name}_sphere.ply"
+    rows = []
+    for method, options in methods.items():
         report = context.programs.reconstruct(cloud, mesh, *options, sphere=sphere)[1]
         rows.append({"method": method, **context.programs.measure(mesh, cloud, sphere),
                      "residual": f"{report['embedding']['residual']:.1e}",
                      "outside": 100.0 * report["diagnosis"]["edges_outside_graph"]})  # fmt: skip
-        meshes.append(mesh)
-        spheres.append(sphere)
     context.report.table(name, columns, rows)
-    pictures = Pictures(context.out / f"{name}.png")
-    points = vertices(cloud.points)
-    for begin in range(0, len(meshes), 5):
-        some, maps, names = (every[begin : begin + 5] for every in (meshes, spheres, list(methods)))
-        # The vertices of all meshes are the points, in their order.
-        places = [vertices(sphere)[tip] for sphere in maps]
-        pictures.row(some, names, view=[view])
-        pictures.row(some, [""] * len(some), switches=["--edges"],
-                     **close_up([points[tip]], 5, [points[tip] - points.mean(axis=0)]))  # fmt: skip
-        pictures.row(maps, ["map"] * len(maps), view=[view], colors=cloud.points)
-        pictures.row(maps, [""] * len(maps), switches=["--edges"], colors=cloud.points, **close_up(places, 5, places))
-    context.report.picture(pictures.save(), name)
 
 
 def figure8(context):
@@ -133,12 +132,10 @@ def figure8(context):
     context.report.text(f"""
         ### Figure 8: three weights
 
-        {cloud.name}, k = 25 and 1600 iterations for each weight, and the default. Of the paper's weights the adaptive
-        ones leave the parts that stick out most room on the sphere. Colours are directions on the object. On the right
-        is the default, whose triangles are optimised in space. Close up: the nose.""")
+        {cloud.name}, k = 25 and 1600 iterations for each weight, and the default, whose triangles are optimised in
+        space. Of the paper's weights the adaptive ones leave the parts that stick out most room on the sphere.""")
     methods = {weights: (*PAPER, "-weights", weights) for weights in WEIGHTS}
-    nose = vertices(cloud.points)[:, 0].argmax()
-    _maps_by_methods(context, "figure8", cloud, nose, {**methods, "default": ()}, FIGURE8, (35, 10))
+    _maps_by_methods(context, "figure8", cloud, {**methods, "default": ()}, FIGURE8)
 
 
 def figure9(context):
@@ -147,51 +144,35 @@ def figure9(context):
     context.report.text(f"""
         ### Figure 9: the folded tail
 
-        {cloud.name}: the tail after 0, 100, 200 and 800 iterations. The projection from the centroid puts the tail on
-        the back. The iteration moves the folded layers slowly; on this tail it squeezes them into a line on the sphere
-        and does not separate them, with either weight. The default, first, begins with a coarse graph that is embedded
-        without folds, and has none at any time. Close up: the tail.""")
+        {cloud.name} after 0, 100, 200 and 800 iterations. The projection from the centroid puts the tail on the back.
+        The iteration moves the folded layers slowly; on this tail it squeezes them into a line on the sphere and does
+        not separate them, with either weight. The default begins with a coarse graph that is embedded without folds,
+        and has none at any time.""")
     methods = {f"{weights}, {count} iterations": (*PAPER, "-max-iterations", count, "-weights", weights)
                for weights in ("uniform", "adaptive") for count in (0, 100, 200, 800)}  # fmt: skip
-    points = vertices(cloud.points)
-    tail = (points[:, 2] - 0.2 * points[:, 0]).argmax()
-    _maps_by_methods(context, "figure9", cloud, tail, {"default": (), **methods}, FIGURE9, (15, 15))
+    _maps_by_methods(context, "figure9", cloud, {"default": (), **methods}, FIGURE9)
 
 
 def figure10(context):
     """Noise of b = 0, 1, 3 mean distances to the 25 nearest neighbours."""
     name = context.choose("head_2000", "head_10000")
-    noises = context.choose((0, 1), (0, 1, 3))
     context.report.text(f"""
         ### Figure 10: noise
 
         {name} with noise of b mean distances to the 25 nearest neighbours. As in the paper, every mesh is a closed
-        sphere through all points, however noisy, and a few steps of smoothing recover a surface. The last row of
-        pictures shows what the same smoothing makes of the connectivity of the paper's way. The table has the
-        self-intersections, and the distance from the surface without noise. For noise larger than the distance of
-        neighbours, larger neighbourhoods help: there the paper's graph does better than the default.""")
-    truth = context.programs.scan(name)
-    points = vertices(truth.points)
-    nose = points[points[:, 0].argmax()]
-    files, rows = {}, []
-    for noise in noises:
-        cloud = context.programs.scan(name, noise=noise) if noise else truth
+        sphere through all points, however noisy, and a few steps of smoothing recover a surface. Distances are from
+        the surface without noise. For noise larger than the distance of neighbours, larger neighbourhoods help: there
+        the paper's graph does better than the default.""")
+    mesh, rows = context.work / "figure10.ply", []
+    for noise in context.choose((0, 1), (0, 1, 3)):
+        cloud = context.programs.scan(name, noise=noise or None)
         for method, options in (("paper's iteration", PAPER), ("default", ())):
             row = {"noise": noise, "method": method}
             for prefix, smoothing in (("", ()), ("smooth_", ("-smoothing", "5"))):
-                mesh = context.work / f"figure10_{noise}_{method[:5]}_{prefix}.ply"
                 context.programs.reconstruct(cloud, mesh, *options, *smoothing)
-                files[noise, method, prefix] = mesh
                 quality = context.programs.measure(mesh, cloud)
                 row.update({prefix + key: quality[key] for key in ("intersections", "rms")})
             rows.append(row)
-    pictures = Pictures(context.out / "figure10.png")
-    for method, prefix, caption, options in NOISE_ROWS:
-        focus = {"focus": [nose]} if "zoom" in options else {}
-        pictures.row([files[noise, method, prefix] for noise in noises],
-                     [caption.format(noise) for noise in noises], view=[(35, 10)], **focus,
-                     **options)  # fmt: skip
-    context.report.picture(pictures.save(), "Figure 10")
     context.report.table("figure10", FIGURE10, rows)
 
 

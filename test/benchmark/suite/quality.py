@@ -29,9 +29,6 @@ class Mesh:
         sides = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
         return sides[(sides[:, :, 0] != sides[:, :, 1]).all(axis=1)]
 
-    def diagonal(self):
-        return np.linalg.norm(np.ptp(self.points, axis=0))
-
     def normals(self):
         """Twice as long as the area of each triangle."""
         a, b, c = self.points[self.triangles].transpose(1, 0, 2)
@@ -101,7 +98,7 @@ class Referee:
             found.append((max(distances.max(), of_vertices.max()), (distances**2).mean(),
                           np.degrees(np.arccos(np.minimum(cosines, 1.0))).mean()))  # fmt: skip
         largest, square, angle = np.transpose(found)
-        percent = 100.0 / truth.diagonal()
+        percent = 100.0 / np.linalg.norm(np.ptp(truth.points, axis=0))
         return {"rms": percent * float(np.sqrt(square.mean())), "hausdorff": percent * float(largest.max()),
                 "normals": float(angle.mean())}  # fmt: skip
 

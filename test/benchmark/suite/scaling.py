@@ -5,7 +5,7 @@ import os
 import statistics
 import time
 
-from .machine import available_memory
+from .machine import memory
 from .programs import stage_seconds
 
 # What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and
@@ -55,7 +55,7 @@ def growth(context):
     rows = []
     sizes = context.choose([1000, 10000], [1000, 10000, 100000, 134345, 1000000])
     for n in sizes + ([10000000] if context.large else []):
-        if n * BYTES_A_POINT > available_memory():
+        if n * BYTES_A_POINT > memory("MemAvailable"):
             context.say(f"scaling: {n:,} points do not fit the memory")
             continue
         context.say(f"scaling: {n:,} points")
