@@ -92,6 +92,6 @@ if __name__ == "__main__":
     try:
         main(sys.argv[1:])
     except Failure as failure:
-        sys.exit(f"benchmark: {failure.cause}\n{failure.remedy}")
+        sys.exit("benchmark: {}\n{}".format(*failure.args))
     except OSError as error:
         sys.exit(f"benchmark: {error}\ngive another folder, or free some space")

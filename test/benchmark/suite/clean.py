@@ -61,7 +61,7 @@ def _measure(context, path):
         # The referee also compares the surfaces with each other.
         pairs = context.programs.measure(mesh)["intersections"] if is_sound else 0
     except Failure as failure:
-        return {}, failure.cause
+        return {}, failure.args[0]
     mesh.unlink()
     surfaces = told.get("parts", [told])
     numbers = (told["points"], len(surfaces), sum(one["boundary_loops"] for one in surfaces),

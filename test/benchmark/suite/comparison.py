@@ -57,12 +57,12 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
     ]  # fmt: skip
     compared = []
     for label, mesh, done in zip(methods, meshes, in_turn(commands, repeats, timeout)):
-        row = {"model": cloud.name, "method": label}
-        if done[-1].problem:
-            row["failure"] = done[-1].problem
-            if context.quick or label == OURS:
-                raise Failure(f"{label} on {cloud.name}: {done[-1].problem}", "run it alone")
-            compared.append((row, None))
+        row, problem = {"model": cloud.name, "method": label}, done[-1].problem
+        compared.append((row, None if problem else mesh))
+        if problem and (context.quick or label == OURS):
+            raise Failure(f"{label} on {cloud.name}: {problem}", "run it alone")
+        if problem:
+            row["failure"] = problem
             continue
         output = done[-1].output
         # Libraries print, too.
@@ -71,7 +71,6 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
         if label != OURS:
             parameters[label] = {"method": label, "library": told["library"], "parameters": told["parameters"]}
         row.update(context.programs.measure(mesh, cloud))
-        compared.append((row, mesh))
     return compared
 
 

@@ -9,18 +9,12 @@ import time
 
 from .quality import Mesh, Referee, compare
 
-# The paper's own method, with all of its iterations.
-PAPER = ("-method", "paper", "-tolerance", "0")
 # Exit code of our tools if too many triangles intersect. The mesh is written, and measured like others.
 NOT_USABLE = 3
 
 
 class Failure(Exception):
     """Something that the user can repair: a cause and a remedy, a line each."""
-
-    def __init__(self, cause, remedy):
-        super().__init__(cause)
-        self.cause, self.remedy = cause, remedy
 
 
 @dataclasses.dataclass

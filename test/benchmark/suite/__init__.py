@@ -1,1 +1,0 @@
-"""What tools/benchmark.sh runs: a module for each section of the report."""
