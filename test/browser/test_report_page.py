@@ -56,6 +56,7 @@ FIRST_VIEW = """
     }
     return [view.up.toArray(), view.toward.toArray(), facing];"""
 
+
 class Browser(webdriver.Chrome):
     """Chromium without a window, and with a profile of its own."""
 

@@ -1,7 +1,4 @@
-"""The gallery: clouds, real and generated, and what each method makes of them, side by side.
-
-doc/gallery/README.md says what the clouds are and what one sees.
-"""
+"""What each method makes of real and generated clouds, side by side. doc/gallery/README.md describes them."""
 
 import bz2
 import dataclasses
