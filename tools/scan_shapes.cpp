@@ -385,9 +385,6 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
 }
 
 Scan generateScan(const ScanOptions& options) {
-  if (options.points < 4 || options.points > kMaxScanPoints ||
-      !(options.noise >= 0.0 && options.noise <= 100.0))
-    throw InvalidInput("generateScan: points or noise are out of range");
   const TruthMesh mesh = referenceMesh(options.shape, 128);
   const auto corner = [&](Eigen::Index t, int k) -> Vector3d {
     return mesh.vertices.col(mesh.triangles(k, t));

@@ -42,7 +42,7 @@ struct Scan {
 };
 
 /// Points spread evenly over a shape, at random (blue noise). Scans that differ in their noise only
-/// move the same points. \throw InvalidInput
+/// move the same points. \throw InvalidInput if there is no such shape.
 Scan generateScan(const ScanOptions& options);
 
 /// The surface a scan is taken from.

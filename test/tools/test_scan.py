@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+"""Generated scans, and what they are taken from: test_scan.py FOLDER_OF_THE_TOOLS"""
+
+import os
+import pathlib
+import re
+import tempfile
+import unittest
+
+import numpy as np
+from test_report import nearest, read_ply, run
+
+# V - E + F of those that are no sphere: 2 for each piece, 2 less for each handle, 1 less for each opening.
+EULER = {"pair": 4, "torus": 0, "double_torus": -2, "bowl": 1, "chair": -6, "holed": -2}
+
+
+def scan(shape, points, *options):
+    """Points and normals."""
+    run("scan", shape, "out.xyz", "-points", points, "-normals", *options)
+    return np.hsplit(np.loadtxt("out.xyz"), 2)
+
+
+def neighbors(points, count):
+    """Of each point the distances of its nearest neighbours."""
+    return np.array([np.sort(np.linalg.norm(points - point, axis=1))[1 : count + 1] for point in points])
+
+
+class Scan(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+    def test_all_points_differ_and_are_the_same_for_the_same_seed(self):
+        for shape in ("sphere", "plate", "pair"):
+            for count in (4, 27, 333):
+                first, again, other = (scan(shape, count, "-noise", 0.1, "-seed", seed)[0] for seed in (7, 7, 8))
+                self.assertTrue(np.array_equal(first, again))
+                self.assertEqual(len(np.unique(np.concatenate([first, other]), axis=0)), 2 * count)
+
+    def test_points_and_normals_of_an_ellipsoid_are_exact(self):
+        points, normals = scan("ellipsoid", 500)
+        radii = np.array([0.5, 0.32, 0.22])
+        gradients = points / radii**2
+        self.assertLess(np.abs(np.linalg.norm(points / radii, axis=1) - 1).max(), 1e-6)  # single precision
+        self.assertLess(np.abs(gradients / np.linalg.norm(gradients, axis=1)[:, None] - normals).max(), 1e-6)
+
+    def test_noise_is_uniform_along_the_normal_relative_to_the_25_nearest_neighbours(self):
+        (clean, normals), (noisy, _) = scan("snake", 1000), scan("snake", 1000, "-noise", 0.3)
+        along = ((noisy - clean) * normals).sum(axis=1)
+        self.assertLess(np.abs(noisy - clean - along[:, None] * normals).max(), 1e-6)
+        relative = along / (0.3 * neighbors(clean, 25).mean(axis=1))
+        self.assertLess(np.abs(relative).max(), 1.001)
+        # Of a uniform variable in [-1, 1]: mean 0, mean square 1/3 with a variance of 4/45; five standard deviations.
+        self.assertAlmostEqual(relative.mean(), 0, delta=5 * (1 / 3 / 1000) ** 0.5)
+        self.assertAlmostEqual((relative**2).mean(), 1 / 3, delta=5 * (4 / 45 / 1000) ** 0.5)
+
+    def test_every_shape_is_covered_evenly_and_has_a_true_mesh_of_its_topology(self):
+        shapes, presets = run("scan", "-list").split("Presets:")
+        for size in ("19818", "52809", "134345"):  # of Table 1 of the paper
+            self.assertIn(size, presets)
+        names = re.findall(r"^  (\w+) ", shapes, re.MULTILINE)
+        self.assertEqual([len(names), set(EULER) - set(names)], [16, set()])
+        for name in names:
+            with self.subTest(name):
+                points, normals = scan(name, 600, "-truth", "truth.ply")
+                vertices, _, triangles = read_ply("truth.ply")
+                spacing = neighbors(points, 1)
+                self.assertGreater(spacing.min(), 0.7 * spacing.mean())
+                some = vertices[::97]
+                self.assertLess(np.linalg.norm(some - points[nearest(some, points)], axis=1).max(), 1.4 * spacing.mean())
+                self.check_truth(vertices, triangles, EULER.get(name, 2), name not in ("bowl", "holed"))
+                self.check_normals(points, normals, vertices, triangles)
+
+    def check_truth(self, vertices, triangles, euler, is_closed):
+        self.assertAlmostEqual(np.ptp(vertices, axis=0).max(), 1, delta=0.2)
+        self.assertLess(np.linalg.norm(vertices.max(axis=0) + vertices.min(axis=0)) / 2, 0.2)
+        self.assertGreater(len(triangles), 20000)
+        self.assertGreater(np.linalg.det(vertices[triangles]).sum(), 0)  # six times the volume
+        sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        self.assertEqual(len(np.unique(sides @ [len(vertices), 1])), len(sides))  # oriented
+        edges, counts = np.unique(np.sort(sides, axis=1) @ [len(vertices), 1], return_counts=True)
+        self.assertEqual([counts.max(), counts.min()], [2, 2 if is_closed else 1])
+        self.assertEqual(len(np.unique(triangles)), len(vertices))
+        self.assertEqual(len(vertices) - len(edges) + len(triangles), euler)
+
+    def check_normals(self, points, normals, vertices, triangles):
+        """Points are on the surface, and their normals those of the mesh."""
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
+        sums = [np.bincount(triangles.ravel(), np.repeat(column, 3)) for column in np.cross(b - a, c - a).T]
+        true = np.stack(sums, axis=1) / np.linalg.norm(sums, axis=0)[:, None]
+        at = nearest(points, vertices)
+        self.assertLess(np.linalg.norm(points - vertices[at], axis=1).max(), 0.01)
+        self.assertLess(np.abs(np.linalg.norm(normals, axis=1) - 1).max(), 1e-6)
+        self.assertGreater(np.median((normals * true[at]).sum(axis=1)), 0.99)
+        self.assertGreater(((normals * true[at]).sum(axis=1) > 0).mean(), 0.98)
+
+    def test_every_format_holds_points_and_normals(self):
+        for extension in ("pcd", "ply", "obj", "xyz", "txt"):
+            run("scan", f"out.{extension}", "ELLIPSOID", "-points=100", "-noise", "0.25", "--seed", "7", "-normals")
+            run("reconstruction", f"out.{extension}", f"{extension}.off")
+            mesh = pathlib.Path(f"{extension}.off").read_text()
+            self.assertTrue(mesh.startswith("NOFF\n100 196 0\n"))
+            # Nothing is lost on the way, hence all meshes are the same.
+            self.assertEqual(mesh, pathlib.Path("pcd.off").read_text(), extension)
+        for option in ("-h", "-version"):
+            self.assertIn("pcl_spherical_param_scan", run("scan", option))
+
+
+if __name__ == "__main__":
+    unittest.main()
