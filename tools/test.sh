@@ -47,7 +47,7 @@ fi
 check "clang-format" formatted || true
 if [ "$quick" = no ]; then
   check "scripts" scripts_parse || true
-  programs=(test_concurrency test_reconstruction_worker)
+  programs=(test_contract test_reconstruction_worker)
   if check "TSan: build" configure_and_build tsan "${programs[@]}"; then
     for program in "${programs[@]}"; do
       check "TSan: $program" "build/tsan/bin/$program" --gtest_brief=1 \

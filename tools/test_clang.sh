@@ -29,7 +29,7 @@ sanitized() {
 
 check "set-up" tools/setup.sh || finish
 use_compiler_cache
-programs=(test_core test_map test_pcl test_ros_seam test_cloud_reader test_faults)
+programs=(test_core test_map test_contract test_pcl test_ros_seam test_cloud_reader test_faults)
 if check "clang: build" configure_and_build asan "${programs[@]}" spherical_param_tools; then
   check "clang-tidy" tidy || true
   # Large clouds and whole collections are for the release build: the same code runs on smaller ones

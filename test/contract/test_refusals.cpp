@@ -1,11 +1,14 @@
-// What the functions of the map refuse, each with a remedy: meshes and maps that are wrong,
-// arguments that do not fit, options beyond their ranges, of which the ends are taken.
+// What public functions refuse, each with its reason: points, meshes and maps that are wrong,
+// arguments that do not fit, numbers beyond their ranges, of which the ends are taken.
 
-#include "map_shapes.h"
+#include "core/reconstructions.h"
+#include "map/map_shapes.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/map/texture_atlas.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>
 
@@ -20,14 +23,94 @@ namespace spherical_param::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 constexpr int kMax = std::numeric_limits<int>::max();
 
+void expectReason(const std::string& reason, const std::function<void()>& call) {
+  EXPECT_NE(refusalOf(call).find(reason), std::string::npos) << reason << ": " << refusalOf(call);
+}
+
+/// With a remedy.
 void expectRefused(const std::string& what, const std::function<void()>& call) {
   EXPECT_NE(refusalOf(call).find("; "), std::string::npos) << what << ": " << refusalOf(call);
 }
 
-TEST(MapInput, MeshesAndMapsThatAreWrongAreRefused) {
+TEST(Refusals, OfPointsSayWhatIsMissingAndWhatWasLeftOut) {
+  const auto expect = [](const std::string& reason, const Positions& points,
+                         const Options& options = sphere()) {
+    expectReason(reason, [&] { reconstruct(points, options); });
+  };
+  const Positions good = randomSphere(20, 1);
+  for (Index n = 0; n < 4; ++n)
+    expect("at least 4", good.leftCols(n));
+  expect("but there are 3", good.leftCols(3).replicate(1, 5));
+  Positions plane = good;
+  plane.row(1).setConstant(3.0);
+  expect("one plane", plane);
+  plane *= 1e-300;
+  plane.row(1).setConstant(1e99);  // which no scale brings near together with the rest
+  expect("one plane", plane);
+  expect("beyond 1e100", good * 1e101);
+  Positions infinite = good.leftCols(5);
+  infinite(1, 0) = infinite(2, 3) = kInfinity;
+  expect("there are 3 (left out: 2 points that are not finite)", infinite, {});
+  Options large;
+  large.parts = PartsMode::Each;
+  large.outliers = OutlierMode::Auto;
+  large.min_points = 1000;
+  expect("min_points = 1000 points (left out: 2 points that are not finite, 6 stray points)",
+         horizontally(horizontally(spiralSphere(300), 2.0 * spiralSphere(6)),
+                      Positions::Constant(3, 2, kNan)),
+         large);
+  expectReason("normals", [&] { reconstruct(good, {}, {}, {good.leftCols(3), {}, {}}); });
+}
+
+TEST(Refusals, OfFunctionsThatTakeAMeshAreForIndicesAndThreads) {
+  using Call = std::function<void(const Positions&, const Triangles&, int threads)>;
+  const std::vector<std::pair<Call, bool>> functions{
+      {[](const auto& p, const auto& t, int threads) {
+         checkTopology(t, static_cast<std::size_t>(p.cols()), threads);
+       },
+       true},
+      {[](const auto& p, const auto& t, int threads) { measureMesh(p, t, threads); }, true},
+      {[](const auto& p, const auto& t, int threads) {
+         findSelfIntersections(p, t, onThreads(threads));
+       },
+       true},
+      {[](const auto& p, const auto& t, int threads) {
+         findSelfIntersectionsOf(p, t, {0}, onThreads(threads));
+       },
+       true},
+      {[](const auto& p, const auto& t, int) { areaWeightedNormals(p, t); }, false},
+      {[](const auto& p, const auto& t, int) { signedVolume(p, t); }, false},
+      {[](const auto& p, const auto& t, int) { surfaceArea(p, t); }, false}};
+  const Positions points = spiralSphere(9);
+  const Triangles triangles = triangulateSphere(points);
+  for (const auto& [call, takes_threads] : functions) {
+    EXPECT_NO_THROW(call(points, triangles, 1024));
+    for (const int threads : {-1, 1025})
+      if (takes_threads)
+        expectReason("threads", [&, of = call] { of(points, triangles, threads); });
+    for (const Index vertex : {-1, 9}) {
+      Triangles wrong = triangles;
+      wrong(1, 3) = vertex;
+      expectReason("triangle 3", [&, of = call] { of(points, wrong, 1); });
+    }
+  }
+  for (const Index triangle : {-1, 14})
+    expectReason("triangle", [&] { findSelfIntersectionsOf(points, triangles, {triangle}); });
+  expectReason("at least 4", [&] { triangulateSphere(points.leftCols(3)); });
+  for (const double factor : {1.1, kNan, kInfinity}) {
+    Positions wrong = points;
+    wrong.col(4) *= factor;
+    expectReason("point 4", [&] { triangulateSphere(wrong); });
+    if (factor != 1.1)
+      expectReason("findSelfIntersections", [&] { findSelfIntersections(wrong, triangles); });
+  }
+}
+
+TEST(Refusals, OfMeshesAndMapsThatAreWrong) {
   const Mapped good = mapped(randomSphere(50, 3));
   // Computing a map takes any start, and measuring one takes any triangles of vertices.
   const std::vector<std::pair<std::string, std::function<void(const Mapped&)>>> functions = {
@@ -69,21 +152,15 @@ TEST(MapInput, MeshesAndMapsThatAreWrongAreRefused) {
   wrong.points(0, 0) = kNan;
   for (const std::size_t i : {0U, 2U, 3U})
     expectRefused(functions[i].first, [&] { functions[i].second(wrong); });
-}
-
-TEST(MapInput, MeshesWithHandlesAreRefusedByTheirGenusWhateverTheStart) {
   const Positions points = randomSphere(12 * 8, 5);
   const Triangles torus = torusTriangles(12, 8);
   for (const Triangles& triangles : {torus, Triangles(torus.rightCols(torus.cols() - 1))})
-    for (const Positions& start : {Positions(3, 0), points}) {
-      const std::string refusal = refusalOf([&] { computeSphereMap(points, triangles, start); });
-      EXPECT_NE(refusal.find("its genus is 1; cut its handles, by handles = none"),
-                std::string::npos)
-          << refusal;
-    }
+    for (const Positions& start : {Positions(3, 0), points})
+      expectReason("its genus is 1; cut its handles, by handles = none",
+                   [&] { computeSphereMap(points, triangles, start); });
 }
 
-TEST(MapInput, SurfacesRefuseCapsAndPlacesThatDoNotFit) {
+TEST(Refusals, OfCapsAndPlacesThatDoNotFit) {
   const Mapped open = openBumpy(400);
   const Mapped closed = mapped(randomSphere(50, 3));
   const auto surface_of = [](const Mapped& mesh, const Positions& caps) {
@@ -104,7 +181,7 @@ TEST(MapInput, SurfacesRefuseCapsAndPlacesThatDoNotFit) {
     expectRefused("location", [&] { surface.evaluate(SphereLocation{t, Vector3d::UnitX()}); });
 }
 
-TEST(MapInput, GridsAndGeometryImagesOfWrongSizesAreRefused) {
+TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
   for (const SphereGrid kind : {SphereGrid::Icosahedral, SphereGrid::Octahedral}) {
     // The largest that there is, for any number.
     const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
@@ -122,14 +199,14 @@ TEST(MapInput, GridsAndGeometryImagesOfWrongSizesAreRefused) {
     expectRefused("side", [&] { meshOfGeometryImage({side, Positions(3, 9)}); });
   }
   GeometryImage image = makeGeometryImage(surface, 5);
-  image.positions(1, 7) = std::numeric_limits<double>::infinity();
+  image.positions(1, 7) = kInfinity;
   expectRefused("pixel", [&] { meshOfGeometryImage(image); });
   expectRefused("pixels", [&] { meshOfGeometryImage({5, Positions::Zero(3, 24)}); });
   const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 3);
   expectRefused("grid", [&] { geometryImageOfMesh(resampleSurface(surface, grid)); });
 }
 
-TEST(MapInput, ResampledMeshesThatDoNotFitAreRefused) {
+TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
   const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
   ResampledMesh few = good;
@@ -150,7 +227,7 @@ TEST(MapInput, ResampledMeshesThatDoNotFitAreRefused) {
   expectRefused("a part", [&] { flipped(part, 0); });
 }
 
-TEST(MapInput, SamplesAndSeriesOutOfRangeAreRefused) {
+TEST(Refusals, OfSamplesAndSeriesOutOfRange) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
   for (const std::size_t count : {std::size_t{0}, (std::size_t{1} << 24) + 1})
     expectRefused("sampleEvenly()", [&] { sampleEvenly(surface, count); });
@@ -174,7 +251,7 @@ TEST(MapInput, SamplesAndSeriesOutOfRangeAreRefused) {
   expectRefused("coefficients", [&] { evaluateSphericalHarmonics(series, x); });
 }
 
-TEST(MapInput, TexturesAndMorphsThatDoNotFitAreRefused) {
+TEST(Refusals, OfTexturesAndMorphsThatDoNotFit) {
   using Colors = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   const Mapped mesh = mapped(spiralSphere(30));
   const TextureAtlas good = makeTextureAtlas(mesh.triangles, mesh.sphere);
@@ -196,7 +273,7 @@ TEST(MapInput, TexturesAndMorphsThatDoNotFitAreRefused) {
   for (const double bad : {-1.0, 255.1, kNan})
     expectRefused("a colour", [&] { bakeColors(good, Colors::Constant(3, 30, bad)); });
   MorphResult morph;
-  for (const double t : {kNan, std::numeric_limits<double>::infinity()})
+  for (const double t : {kNan, kInfinity})
     expectRefused("t", [&] { inBetween(morph, t); });
   morph.first.resize(3, 4);
   morph.second.resize(3, 5);
@@ -221,7 +298,7 @@ void expectRange(const std::string& name, Options options, Member Base::*member,
     EXPECT_NE(refusal(value).find(name), std::string::npos) << name << " = " << value;
 }
 
-TEST(MapInput, EndsOfTheRangesAreTakenAndWhatIsBeyondIsRefusedByName) {
+TEST(Refusals, OfOptionsNameThemAndEndsOfTheRangesAreTaken) {
   for (const Index n : {4, 150}) {
     const Mapped mesh =
         mapped(n == 4 ? Positions(cubeGrid(2)(Eigen::all, std::vector{0, 3, 5, 6}).array() - 0.5)
@@ -265,7 +342,7 @@ TEST(MapInput, EndsOfTheRangesAreTakenAndWhatIsBeyondIsRefusedByName) {
     expectRange("height", small, &BakeOptions::height, bake, {16, 17}, {15, 16385, kMax});
     expectRange("gutter", small, &BakeOptions::gutter, bake, {0, 256}, {-1, 257, kMax});
     plain.pairs.assign(4097, {});
-    EXPECT_NE(refusalOf([&] { morph(plain); }).find("pairs"), std::string::npos);
+    expectReason("pairs", [&] { morph(plain); });
     plain.pairs = {{std::numeric_limits<Index>::min(), 0}, {0, kMax}, {-1, -1}, {0, 0}};
     EXPECT_EQ(morphSurfaces(surface, surface, plain).impossible.size(), 3U);
   }
