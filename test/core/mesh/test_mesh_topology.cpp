@@ -1,11 +1,12 @@
 #include "spherical_param/mesh_topology.h"
 
 #include "helpers.h"
-#include "reference/mesh_topology.h"
 #include "triangle_lists.h"
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -27,7 +28,6 @@ TEST(MeshTopology, GenusAddsUpOverComponents) {
     const MeshTopology topology = checkTopology(triangles, n);
     EXPECT_TRUE(topology.closed && topology.manifold() && topology.oriented);
     EXPECT_EQ(topology.components, static_cast<std::size_t>(components));
-    EXPECT_EQ(topology.euler_characteristic, 2 * (components - genus));
     EXPECT_EQ(topology.genus, genus);
     EXPECT_EQ(topology.isSphere(), components == 1 && genus == 0);
   };
@@ -51,49 +51,106 @@ TEST(MeshTopology, DamagedSurfacesAreNoSpheres) {
   EXPECT_FALSE(of(turned, 4).oriented);
   EXPECT_FALSE(of(joined(tetrahedron(), tetrahedron(3)), 7).vertex_manifold);
   EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 1, 4}})), 5).edge_manifold);
-  EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 2, 1}})), 4).edge_manifold);
-  EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 0, 1}})), 4).edge_manifold);
   EXPECT_EQ(of(tetrahedron(1), 6).unused_vertices, (std::vector<Index>{0, 5}));
   EXPECT_FALSE(of(Triangles(3, 0), 0).closed);
   EXPECT_FALSE(of(Triangles(3, 0), 3).closed);
 }
 
-void expectTopologyByDefinition(const Triangles& triangles, Index n) {
-  const MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(n));
-  const MeshTopology expected = reference::topologyOf(triangles, n);
-  EXPECT_EQ(topology.vertices, expected.vertices);
-  EXPECT_EQ(topology.edges, expected.edges);
-  EXPECT_EQ(topology.triangles, expected.triangles);
-  EXPECT_EQ(topology.components, expected.components);
-  EXPECT_EQ(topology.euler_characteristic, expected.euler_characteristic);
-  EXPECT_EQ(topology.closed, expected.closed);
-  EXPECT_EQ(topology.edge_manifold, expected.edge_manifold);
-  EXPECT_EQ(topology.oriented, expected.oriented);
-  EXPECT_EQ(topology.nonmanifold_vertices, expected.nonmanifold_vertices);
-  EXPECT_EQ(topology.unused_vertices, expected.unused_vertices);
+/// The number of classes of some triangles: those that are joined are in one.
+std::size_t countClasses(const std::vector<Eigen::Index>& triangles,
+                         const std::function<bool(Eigen::Index, Eigen::Index)>& are_joined) {
+  std::size_t classes = 0;
+  std::vector<Eigen::Index> rest = triangles;
+  while (!rest.empty()) {
+    ++classes;
+    std::vector<Eigen::Index> todo{rest.back()};
+    while (!todo.empty()) {
+      const Eigen::Index t = todo.back();
+      todo.pop_back();
+      const auto others = std::partition(
+          rest.begin(), rest.end(), [&](Eigen::Index u) { return u != t && !are_joined(t, u); });
+      std::copy_if(others, rest.end(), std::back_inserter(todo),
+                   [t](Eigen::Index u) { return u != t; });
+      rest.erase(others, rest.end());
+    }
+  }
+  return classes;
 }
 
-TEST(MeshTopology, AgreesWithItsDefinitionOnRandomTriangles) {
+/// From the definitions: a table of edges, and triangles that hang together by vertices, and around
+/// a vertex by edges.
+void expectTopologyByDefinition(const Triangles& triangles, Index n) {
+  const MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(n));
+  std::map<std::pair<Index, Index>, std::vector<bool>> edges;  // whether a side runs upwards
+  std::map<Index, std::vector<Eigen::Index>> at;
+  std::map<Index, std::vector<Eigen::Index>> around;  // without those that have a vertex twice
+  std::vector<Eigen::Index> all;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    all.push_back(t);
+    const Eigen::Matrix<Index, 3, 1> v = triangles.col(t);
+    for (const Index w : v)
+      at[w].push_back(t);
+    if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0])
+      for (int k = 0; k < 3; ++k) {
+        edges[std::minmax({v[k], v[(k + 1) % 3]})].push_back(v[k] < v[(k + 1) % 3]);
+        around[v[k]].push_back(t);
+      }
+  }
+  const auto common = [&](Eigen::Index t, Eigen::Index u) {
+    int count = 0;
+    for (const Index v : triangles.col(t))
+      count += (triangles.col(u).array() == v).any() ? 1 : 0;
+    return count;
+  };
+  bool is_closed = triangles.cols() > 0;
+  bool is_manifold = true;
+  bool is_oriented = true;
+  for (const auto& [edge, sides] : edges) {
+    is_closed = is_closed && sides.size() > 1;
+    is_manifold = is_manifold && sides.size() <= 2;
+    is_oriented = is_oriented && (sides.size() == 1 || (sides.size() == 2 && sides[0] != sides[1]));
+  }
+  std::vector<Index> unused;
+  std::vector<Index> nonmanifold;
+  std::size_t whole = 0;  // triangles of three vertices
+  for (Index v = 0; v < n; ++v) {
+    if (at.count(v) == 0)
+      unused.push_back(v);
+    whole += around[v].size();
+    const auto share_edge = [&](Eigen::Index t, Eigen::Index u) { return common(t, u) > 1; };
+    if (countClasses(around[v], share_edge) > 1)
+      nonmanifold.push_back(v);
+  }
+  EXPECT_EQ(topology.vertices, at.size());
+  EXPECT_EQ(topology.edges, edges.size());
+  EXPECT_EQ(topology.triangles, all.size());
+  EXPECT_EQ(topology.components,
+            countClasses(all, [&](Eigen::Index t, Eigen::Index u) { return common(t, u) > 0; }));
+  EXPECT_EQ(topology.euler_characteristic,
+            static_cast<long long>(at.size() + all.size()) - static_cast<long long>(edges.size()));
+  EXPECT_EQ(topology.closed, is_closed);
+  EXPECT_EQ(topology.edge_manifold, is_manifold && whole == 3 * all.size());
+  EXPECT_EQ(topology.oriented, is_oriented);
+  EXPECT_EQ(topology.nonmanifold_vertices, nonmanifold);
+  EXPECT_EQ(topology.unused_vertices, unused);
+}
+
+TEST(MeshTopology, AgreesWithItsDefinitionOnRandomTrianglesAndDamagedSurfaces) {
   std::mt19937 random(5);
   for (int run = 0; run < 2000; ++run) {
+    SCOPED_TRACE(run);
     // From a few triangles apart to many more than fit around so few vertices.
     const Index n = 3 + static_cast<Index>(random() % 12);
     Triangles triangles(3, static_cast<Eigen::Index>(random() % 60));
     triangles =
         triangles.unaryExpr([&](Index) { return static_cast<Index>(random() % unsigned(n)); });
-    SCOPED_TRACE(run);
     expectTopologyByDefinition(triangles, n);
-  }
-}
-
-TEST(MeshTopology, AgreesWithItsDefinitionOnDamagedSurfaces) {
-  std::mt19937 random(6);
-  for (int run = 0; run < 300; ++run) {
-    Triangles triangles = joined(torusTriangles(4, 4), joined(tetrahedron(16), tetrahedron(20)));
+    if (run % 7 != 0)
+      continue;
+    triangles = joined(torusTriangles(4, 4), joined(tetrahedron(16), tetrahedron(20)));
     for (int change = 0; change < run % 4; ++change)
       triangles.data()[random() % static_cast<unsigned>(triangles.size())] =
           static_cast<Index>(random() % 25);
-    SCOPED_TRACE(run);
     expectTopologyByDefinition(triangles, 25);
   }
 }
