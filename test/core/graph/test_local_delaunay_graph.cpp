@@ -149,22 +149,28 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
   EXPECT_EQ(countUncertified(stars), static_cast<Index>(uncertified(32).size()));
 }
 
-TEST(LocalDelaunayGraph, ThirtyTwoNeighboursAreUsedHoweverTheyCome) {
+TEST(LocalDelaunayGraph, UpTo32NeighboursAreUsedHoweverTheyCome) {
   const Positions points = randomSphere(300, 4);
   const NeighborLists lists = bruteForceNeighbors(points, 32);
   const Edges expected = edgesOf(test::graphOf(points, lists).graph);
   for (const int k : {0, 5, 12, 40})
     EXPECT_EQ(edgesOf(build(points, k).graph), expected) << k;
   EXPECT_EQ(edgesOf(test::graphOf(points, test::untidy(lists)).graph), expected);
-}
-
-TEST(LocalDelaunayGraph, WithoutASearchTheListsAreAllThereIs) {
-  const Positions points = randomSphere(300, 3);
+  // Without a search, or with one that finds nothing, the lists are all there is.
+  const NeighborSearch blind = [](const std::vector<Index>& some, int) {
+    NeighborLists nothing;
+    nothing.offsets.assign(some.size() + 1, 0);
+    return nothing;
+  };
   for (const int k : {0, 1, 2, 3, 12}) {
-    const NeighborLists lists = bruteForceNeighbors(points, k);
-    expectSound(points, test::graphOf(points, lists));
-    EXPECT_EQ(countUncertified(test::starsOf(points, lists)) > 0, k == 12);
+    const NeighborLists few = bruteForceNeighbors(points, k);
+    const NeighborGraph result = test::graphOf(points, few);
+    expectSound(points, result);
+    EXPECT_EQ(edgesOf(test::graphOf(points, few, blind).graph), edgesOf(result.graph));
+    EXPECT_EQ(countUncertified(test::starsOf(points, few)) > 0, k == 12);
   }
+  for (const Index n : {0, 1, 2, 3})
+    EXPECT_EQ(static_cast<Index>(edgesOf(build(randomSphere(n, 17)).graph).size()), n * (n - 1));
 }
 
 /// The pairs of which one has the other in its list, and no third one that is in their ball.
@@ -220,50 +226,19 @@ Positions sheet(int rows, double height, double jitter, std::uint64_t seed) {
   return points;
 }
 
-TEST(LocalDelaunayGraph, SquaresHaveNoDiagonals) {
-  const int rows = 12;
-  const Positions points = 0.1 * sheet(rows, 3.0, 0.0, 1);
-  const NeighborGraph result = build(points);
-  EXPECT_EQ(countWithoutPlane(starsOf(points)), 0);
-  for (int row = 1; row + 1 < rows; ++row)
-    for (int column = 1; column + 1 < rows; ++column) {
-      const Index i = row * rows + column;
-      // Corners have two neighbours and are repaired, beyond the squares that they are part of.
-      if ((row > 2 && row + 3 < rows) || (column > 2 && column + 3 < rows)) {
-        EXPECT_EQ(rowOf(result.graph, i), (std::vector<Index>{i - rows, i - 1, i + 1, i + rows}));
-      }
+TEST(LocalDelaunayGraph, SquaresHaveNoDiagonalsAndCloseSheetsAreNotJoinedInside) {
+  // Corners have two neighbours and are repaired, and so are the ends of sheets.
+  const auto is_inside = [](Index i, int rows) {
+    return std::min(i / rows, i % rows) > 2 && std::max(i / rows, i % rows) < rows - 3;
+  };
+  const NeighborGraph squares = build(0.1 * sheet(12, 3.0, 0.0, 1));
+  for (Index i = 0; i < 144; ++i)
+    if (is_inside(i, 12)) {
+      EXPECT_EQ(rowOf(squares.graph, i), (std::vector<Index>{i - 12, i - 1, i + 1, i + 12}));
     }
-}
-
-TEST(LocalDelaunayGraph, SheetsThatAreCloseToEachOtherAreNotJoinedInside) {
-  const int rows = 20;
-  const NeighborGraph result =
-      build(horizontally(sheet(rows, 0.0, 0.2, 6), sheet(rows, 1.5, 0.2, 7)));
-  for (const auto& [i, j] : edgesOf(result.graph)) {
-    const bool inside = std::min(i / rows, i % rows) > 2 && std::max(i / rows, i % rows) < rows - 3;
-    EXPECT_FALSE(inside && i < rows * rows && j >= rows * rows) << i << " " << j;
-  }
-}
-
-/// Lines of a scanner, ten times denser along than across: the ten nearest are all on one line.
-Positions scanLines() {
-  Positions points(3, 30 * 12);
-  std::mt19937_64 random(10);
-  std::uniform_real_distribution<double> jitter(-0.01, 0.01);
-  for (int line = 0; line < 12; ++line)
-    for (int k = 0; k < 30; ++k)
-      points.col(line * 30 + k) << 0.1 * k + jitter(random), line + jitter(random), 0.0;
-  return points;
-}
-
-TEST(LocalDelaunayGraph, AcrossScanLinesThereIsATangentPlaneAndAlongOneThereIsNone) {
-  EXPECT_TRUE(build(scanLines()).bridges.empty());
-  const internal::Stars across = starsOf(scanLines());
-  for (Index line = 1; line < 11; ++line)
-    EXPECT_TRUE(across.kind[line * 30 + 15].tangent_plane);
-  const Positions line = Eigen::Vector3d(1.0, 2.0, 3.0) * Eigen::RowVectorXd::LinSpaced(100, 0, 1);
-  expectSound(line, build(line));
-  EXPECT_EQ(countWithoutPlane(starsOf(line)), 100);
+  const NeighborGraph sheets = build(horizontally(sheet(20, 0.0, 0.2, 6), sheet(20, 1.5, 0.2, 7)));
+  for (const auto& [i, j] : edgesOf(sheets.graph))
+    EXPECT_FALSE(i < 400 && is_inside(i, 20) && j >= 400) << i << " " << j;
 }
 
 TEST(LocalDelaunayGraph, BridgesAreTheClosestPairsWithDifferentEnds) {
@@ -323,23 +298,6 @@ TEST(LocalDelaunayGraph, EveryCloudHasASoundGraphWithoutACutNode) {
     // The thin ones are connected, by single points that are tied.
     EXPECT_EQ(result.bridges.empty(), width == 0.1);
   }
-}
-
-TEST(LocalDelaunayGraph, FewerThanFourPointsAreAllJoined) {
-  for (const Index n : {0, 1, 2, 3})
-    EXPECT_EQ(static_cast<Index>(edgesOf(build(randomSphere(n, 17)).graph).size()), n * (n - 1));
-}
-
-TEST(LocalDelaunayGraph, ShorterAnswersOfTheSearchChangeNothing) {
-  const Positions points = randomSphere(50, 25);
-  const NeighborLists lists = bruteForceNeighbors(points, 4);
-  const NeighborGraph answered =
-      test::graphOf(points, lists, [](const std::vector<Index>& some, int) {
-        NeighborLists nothing;
-        nothing.offsets.assign(some.size() + 1, 0);
-        return nothing;
-      });
-  EXPECT_EQ(edgesOf(answered.graph), edgesOf(test::graphOf(points, lists).graph));
 }
 
 }  // namespace

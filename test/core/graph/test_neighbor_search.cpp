@@ -1,6 +1,7 @@
 #include "neighbor_search.h"
 
 #include "graph_helpers.h"
+#include "spherical_param/errors.h"
 
 namespace spherical_param {
 namespace {
@@ -38,6 +39,8 @@ TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
   }
   EXPECT_EQ(findNearestNeighbors(Positions(3, 0), 5).size(), 0U);
   EXPECT_EQ(findNearestNeighbors(Positions::Zero(3, 1), 5).indices, std::vector<Index>{0});
+  // 50,000 lists of as many entries are more than 2^31.
+  EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
 }
 
 }  // namespace
