@@ -22,19 +22,6 @@ int signOf(Wide x) {
   return (x > 0) - (x < 0);
 }
 
-TEST(ExactPredicates, SignsArePositiveCounterClockwiseAndInside) {
-  EXPECT_EQ(orientation2d({0, 0}, {1, 0}, {0, 1}), 1);
-  EXPECT_EQ(orientation2d({0, 0}, {0, 1}, {1, 0}), -1);
-  EXPECT_EQ(orientation2d({0, 0}, {1, 1}, {3, 3}), 0);
-  EXPECT_EQ(orientation3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}), 1);
-  EXPECT_EQ(orientation3d({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}), -1);
-  EXPECT_EQ(orientation3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, -3, 0}), 0);
-  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, 0}), 1);
-  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, -1}), 0);
-  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, -2}), -1);
-  EXPECT_EQ(inCircle({0, 1}, {1, 0}, {-1, 0}, {0, 0}), -1);
-}
-
 // The grid of neighbouring doubles around a point on the line y = x: the sign is that of the
 // integers, which plain evaluation gets wrong for most of the grid (Kettner et al. 2008).
 TEST(ExactPredicates, OrientationInThePlaneIsExactOnNeighbouringDoubles) {
