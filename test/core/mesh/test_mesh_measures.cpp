@@ -78,20 +78,6 @@ TEST(MeshMeasures, MoveAndTurnWithTheMeshAndLoseNoMoreDigitsThanItsPoints) {
   }
 }
 
-TEST(MeshMeasures, ScaleRaisesEachMeasureToItsPower) {
-  const Mesh mesh = lopsided();
-  const MeshMeasures one = measureMesh(mesh.points, mesh.triangles);
-  // Powers of two scale exactly.
-  for (const double scale : {0x1p-20, 0x1p30}) {
-    const MeshMeasures measures = measureMesh(scale * mesh.points, mesh.triangles);
-    EXPECT_EQ(measures.volume, std::pow(scale, 3) * one.volume);
-    EXPECT_EQ(measures.area, std::pow(scale, 2) * one.area);
-    EXPECT_EQ(measures.mean_edge_length, scale * one.mean_edge_length);
-    EXPECT_EQ(measures.centroid, scale * one.centroid);
-    EXPECT_EQ(measures.inertia, std::pow(scale, 5) * one.inertia);
-  }
-}
-
 TEST(MeshMeasures, TurnedInsideOutVolumeAndInertiaChangeSign) {
   const Mesh mesh = lopsided();
   Triangles turned = mesh.triangles;

@@ -1,7 +1,6 @@
 #include "sphere_mesh.h"
 
 #include "helpers.h"
-#include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "triangle_lists.h"
 
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <random>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -197,62 +195,6 @@ TEST(SphereMesh, HoldsItsTrianglesInAnyOrder) {
   }
 }
 
-TEST(MeshTopology, OtherSurfacesAreNoSphere) {
-  const auto is_sphere = [](const Triangles& triangles, std::size_t vertex_count) {
-    return checkTopology(triangles, vertex_count).isSphere();
-  };
-  EXPECT_TRUE(is_sphere(tetrahedron(), 4));
-  EXPECT_TRUE(is_sphere(bipyramid(5), 7));
-  Triangles turned = bipyramid(5);
-  std::swap(turned(0, 3), turned(1, 3));
-  EXPECT_FALSE(is_sphere(turned, 7));
-  Triangles degenerate = bipyramid(5);
-  degenerate(0, 3) = degenerate(1, 3);
-  EXPECT_FALSE(is_sphere(degenerate, 7));
-
-  // A torus of seven vertices beside a tetrahedron: as many triangles as a sphere has.
-  Triangles two_pieces(3, 18);
-  for (Index i = 0; i < 7; ++i) {
-    two_pieces.col(2 * i) << i, (i + 1) % 7, (i + 3) % 7;
-    two_pieces.col(2 * i + 1) << i, (i + 3) % 7, (i + 2) % 7;
-  }
-  two_pieces.rightCols(4) = tetrahedron().array() + 7;
-  EXPECT_FALSE(is_sphere(two_pieces, 11));
-
-  // Two tetrahedra with a common edge, in whatever order their sides meet.
-  Triangles common_edge(3, 8);
-  common_edge.leftCols(4) = tetrahedron();
-  common_edge.rightCols(4) = tetrahedron().unaryExpr([](Index v) { return v < 2 ? v : v + 2; });
-  for (std::uint64_t order = 0; order < 200; ++order)
-    EXPECT_FALSE(is_sphere(shuffled(common_edge, order), 6));
-}
-
-TEST(SphereMesh, MergeUndoesSplitAndFlipUndoesFlip) {
-  const Index n = 51;
-  const Triangles triangles = triangulateSphere(test::randomSphere(n - 1, 2));
-  const auto expected = test::canonical(triangles);
-  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
-  int flips = 0;
-  for (Index t = 0; t < triangles.cols(); ++t) {
-    mesh.split(t, n - 1);
-    EXPECT_EQ(mesh.degree(n - 1), 3);
-    expectSound(mesh, n);
-    EXPECT_EQ(mesh.merge(n - 1), t);
-    EXPECT_FALSE(isInMesh(mesh, n - 1));
-    ASSERT_EQ(test::canonical(mesh.triangles()), expected);
-    for (int k = 0; k < 3; ++k) {
-      if (!mesh.flip(t, k))
-        continue;
-      ++flips;
-      ASSERT_NE(test::canonical(mesh.triangles()), expected);
-      // The triangle is (c, a, d) now: its new side is opposite to a.
-      ASSERT_TRUE(mesh.flip(t, 1));
-      ASSERT_EQ(test::canonical(mesh.triangles()), expected);
-    }
-  }
-  EXPECT_GT(flips, 200);
-}
-
 TEST(SphereMesh, RefusedMovesChangeNothing) {
   SphereMesh least(tetrahedron(), 4);
   SphereMesh octahedron(bipyramid(4), 6);  // no vertex has three triangles
@@ -267,23 +209,6 @@ TEST(SphereMesh, RefusedMovesChangeNothing) {
       EXPECT_FALSE(least.flip(t, k));
   EXPECT_EQ(stateOf(least, 4), least_before);
   EXPECT_EQ(stateOf(octahedron, 6), octahedron_before);
-}
-
-TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
-  const Index ring = 3000;
-  const Index n = ring + 2;
-  SphereMesh mesh(bipyramid(ring), static_cast<std::size_t>(n));
-  EXPECT_EQ(mesh.degree(0), ring);
-  EXPECT_FALSE(mesh.areJoined(0, 1));
-  // The other diagonal of each side of the ring is the axis.
-  ASSERT_TRUE(mesh.flip(0, 0));
-  EXPECT_TRUE(mesh.areJoined(0, 1));
-  EXPECT_TRUE(mesh.areJoined(1, 0));
-  const std::vector<Index> before = stateOf(mesh, n);
-  for (Index t = 2; t < mesh.size(); ++t)
-    EXPECT_FALSE(mesh.flip(t, 0));
-  EXPECT_EQ(stateOf(mesh, n), before);
-  expectSound(mesh, n);
 }
 
 TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphereAndAreRolledBackToTheLastIndex) {
