@@ -2,7 +2,6 @@
 
 #include "embeddings.h"
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 namespace spherical_param {
@@ -46,26 +45,6 @@ void expectDerivativesOfDifferences(bool barrier) {
 TEST(EmbeddingEnergy, DerivativesAgreeWithDifferences) {
   expectDerivativesOfDifferences(false);
   expectDerivativesOfDifferences(true);
-}
-
-TEST(EmbeddingEnergy, LaplacianIsPositiveDefiniteAndNearTheHessian) {
-  const Cloud cloud = dentedCloud(60);
-  const EmbeddingEnergy energy(cloud.graph, 1);
-  Positions u = solve(cloud.graph).directions;
-  const Eigen::MatrixXd laplacian = energy.laplacian(u);
-  EXPECT_TRUE(laplacian.isApprox(laplacian.transpose(), 1e-14));
-  EXPECT_GT(laplacian.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Positions step = randomTangent(u, seed);
-    Positions product;
-    energy.multiplyHessian(u, step, product);
-    const double ratio = dot(step, product) / dot(step, step * laplacian);
-    EXPECT_GT(ratio, 1.0 / 1.5);
-    EXPECT_LT(ratio, 2.0 / 1.5);
-  }
-  // A node at the place of all its neighbours has no stiffness: it stays.
-  u.colwise() = Eigen::Vector3d::UnitX().eval();
-  EXPECT_TRUE(Eigen::MatrixXd(energy.laplacian(u)).isIdentity());
 }
 
 }  // namespace
