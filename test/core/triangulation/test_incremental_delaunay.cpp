@@ -81,19 +81,6 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
   EXPECT_GT(compared, 400);
 }
 
-TEST(IncrementalDelaunay, DoesNotDependOnTheOrderOfThePoints) {
-  for (const Positions& points :
-       {randomSphere(5000, 1), clusters(5000, 2), limbs(5000, 3),
-        horizontally(randomSphere(500, 1), cap(3000, 1e-11, {0.6, 0.0, 0.8}, 2))}) {
-    const std::vector<Index> order = test::shuffledRange(points.cols(), 7);
-    const Triangles triangles =
-        triangulate(points(Eigen::all, order)).triangles.unaryExpr([&](Index v) {
-          return order[static_cast<std::size_t>(v)];
-        });
-    EXPECT_EQ(test::canonical(triangles), test::canonical(triangulate(points).triangles));
-  }
-}
-
 /// Integer points in the plane, and their image around the lowest or highest point of the sphere:
 /// an integer step is 2^-53, small enough for the sphere to be its tangent plane.
 struct IntegerCluster {
@@ -246,10 +233,36 @@ TEST(IncrementalDelaunay, IsDelaunayOnRandomSubsetsOfAGrid) {
   }
 }
 
-// Within rounding of a line, some triples are on it and some are not.
-TEST(IncrementalDelaunay, GreatCircleWithinRoundingIsTriangulatedWhole) {
-  const Positions points = latitude(10000, 0.0);
-  expectSound(points, triangulate(points));
+// Cubes, circles within rounding of a plane, prisms, crowds that are smaller than rounding, and
+// places of many points.
+TEST(IncrementalDelaunay, EveryPointIsAVertexWhereManyAreInOnePlaneOrPlace) {
+  std::vector<Positions> all{latitude(300, 0.0), latitude(10000, 0.0),
+                             horizontally(latitude(500, 0.6), latitude(500, -0.6))};
+  for (const int m : {2, 3, 6, 11})
+    all.push_back((test::cubeGrid(m).array() - 0.5).matrix().colwise().normalized());
+  for (const double radius : {0.05, 1e-3, 1e-7, 1e-9, 1e-12, 1e-15}) {
+    const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
+    const Positions one = cap(1500, radius, pole, 2);
+    for (const Positions& beside : {Positions(3, 0), cap(1500, radius, -pole, 3),
+                                    cap(500, 0.05, pole, 4), randomSphere(500, 1)})
+      all.push_back(horizontally(beside, one));
+  }
+  const Positions some = randomSphere(100, 3);
+  const Positions place = some.col(5).replicate(1, 1000);
+  all.push_back(horizontally(some, some));
+  all.push_back(place);
+  all.push_back(horizontally(place, some.col(6).replicate(1, 50)));
+  for (const Positions& points : all)
+    expectSound(points, triangulate(points));
+  // A prism of two regular n-gons: nothing else is convex.
+  EXPECT_NEAR(test::volumeOf(all[2], triangulate(all[2]).triangles),
+              1.2 * 0.5 * 500 * 0.64 * std::sin(2.0 * test::kPi / 500), 1e-9);
+  // Vertices at one place do not crowd round one of them.
+  const Positions crowded = horizontally(some, place);
+  const SphereDelaunay result = triangulate(crowded);
+  expectSound(crowded, result);
+  EXPECT_EQ(result.coincident, 1000);
+  EXPECT_LE(highestDegree(result.triangles, 1100), 40);
 }
 
 // Circles through the pole are lines in the plane.
@@ -322,16 +335,6 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
     EXPECT_LT(result.coincident, 3 * (1074 - 195));
     EXPECT_GT(result.coincident, 3 * (1074 - 210));
   }
-}
-
-// Vertices at one place do not crowd round one of them.
-TEST(IncrementalDelaunay, PointsAtOnePlaceShareItsTriangles) {
-  const Positions points =
-      horizontally(randomSphere(100, 3), Positions(randomSphere(100, 3).col(5).replicate(1, 1000)));
-  const SphereDelaunay result = triangulate(points);
-  expectSound(points, result);
-  EXPECT_EQ(result.coincident, 1000);
-  EXPECT_LE(highestDegree(result.triangles, static_cast<Index>(points.cols())), 40);
 }
 
 // All in caps smaller than the cells of the curve: a walk through them stays short.
