@@ -3,7 +3,7 @@
 #include "graph_building.h"
 #include "graphs.h"
 #include "handle_shapes.h"
-#include "spherical_param/self_intersection.h"
+#include "open_shapes.h"
 
 #include <set>
 
@@ -29,19 +29,6 @@ std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
     for (Eigen::Index k = 0; k < 3; ++k)
       edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
   return edges;
-}
-
-TEST(FaceMesh, OfASphereAndOfATorusIsTheirSurface) {
-  const Positions sphere = test::spiralSphere(500);
-  const auto of_sphere = meshOf(sphere, delaunayGraph(sphere), 0);
-  ASSERT_TRUE(of_sphere);
-  EXPECT_TRUE(test::isSphereOverAll(*of_sphere, 500));
-  EXPECT_TRUE(findSelfIntersections(sphere, *of_sphere).empty());
-  const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
-  const auto of_torus = meshOf(torus, delaunayGraph(torus), 1);
-  ASSERT_TRUE(of_torus);
-  EXPECT_TRUE(test::isSurfaceOverAll(*of_torus, static_cast<Index>(torus.cols()), 1));
-  EXPECT_TRUE(findSelfIntersections(torus, *of_torus).empty());
 }
 
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {

@@ -6,7 +6,6 @@
 #include "graphs.h"
 #include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
-#include "surface_topology.h"
 
 namespace spherical_param {
 namespace {
@@ -106,21 +105,6 @@ TEST(Necks, MakeMeshesOfLongTubesSound) {
   EXPECT_TRUE(surface.self_intersections.empty());
   // There is no map to one sphere.
   EXPECT_EQ(surface.sphere.cols(), 0);
-}
-
-TEST(Necks, AreNotCutWithoutHandles) {
-  const Positions points = needle(120, 12);
-  const Graph graph = test::localDelaunayGraph(points).graph;
-  const auto isCut = [&](const Options& options) {
-    internal::SurfaceTopology topology =
-        internal::findTopology(points, graph, false, 1.0, options, {});
-    return internal::SurfaceCutter(points, graph, topology).next().has_value();
-  };
-  Options options;
-  options.handles = HandleMode::Auto;
-  EXPECT_TRUE(isCut(options));
-  options.handles = HandleMode::None;
-  EXPECT_FALSE(isCut(options));
 }
 
 }  // namespace
