@@ -1,6 +1,5 @@
 #include "open_mesh.h"
 
-#include "boundary_loops.h"
 #include "open_shapes.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
@@ -45,29 +44,6 @@ struct DoublePyramid {
   Graph graph;
   Openings openings;
 };
-
-TEST(OpenMesh, LeavesOutWhatALoopLeadsToAndKeepsEveryVertex) {
-  // The loop is one triangle of the upper side: its sides at the tip are long.
-  DoublePyramid pyramid(8);
-  const OpenMesh mesh = pyramid.open({{0, 1, 8}});
-  const Triangles surface = internal::surfaceOf(mesh);
-  EXPECT_EQ(surface.cols(), 15);
-  const auto loops = internal::boundaryLoops(surface, 10);
-  ASSERT_EQ(loops.size(), 1U);
-  EXPECT_EQ(loops[0], (std::vector<Index>{0, 8, 1}));
-}
-
-TEST(OpenMesh, IsAManifoldWhereTwoOpeningsMeet) {
-  // Two triangles at the tip, with surface between them.
-  DoublePyramid pyramid(8);
-  const OpenMesh mesh = pyramid.open({{0, 1, 8}, {4, 5, 8}});
-  const Triangles surface = internal::surfaceOf(mesh);
-  const MeshTopology topology = checkTopology(surface, 10);
-  EXPECT_TRUE(topology.manifold());
-  EXPECT_TRUE(topology.oriented);
-  EXPECT_TRUE(topology.unused_vertices.empty());
-  EXPECT_EQ(surface.cols(), 15);
-}
 
 TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
   // All around the upper tip is open, and it lies in a triangle of the lower side, to the last bit:

@@ -138,20 +138,5 @@ TEST(SmoothFill, WhatIsNoDiscStays) {
   EXPECT_GT(disc.points.cols(), 120);
 }
 
-TEST(SmoothFill, CanBeCancelled) {
-  const Plate plate;
-  const auto reports = [&](int last) {
-    int seen = 0;
-    Execution execution;
-    execution.progress = [&](const Progress&) { return ++seen != last; };
-    internal::fillSmoothly(plate.points, plate.triangles, plate.openings, execution);
-    return seen;
-  };
-  const int all = reports(-1);
-  ASSERT_GT(all, 1);
-  for (const int last : {1, all})
-    EXPECT_THROW(reports(last), Cancelled) << last;
-}
-
 }  // namespace
 }  // namespace spherical_param
