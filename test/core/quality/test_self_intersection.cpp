@@ -327,15 +327,6 @@ TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
   EXPECT_TRUE(found(count, 1).areFewerThan(found(200, 1)));
 }
 
-TEST(SelfIntersection, MarksAreThoseOfTheTrianglesInPairs) {
-  std::vector<std::uint8_t> marks{7, 4, 1, 0};
-  markSelfIntersections({{1, 3}}, marks);
-  EXPECT_EQ(marks, (std::vector<std::uint8_t>{6, 5, 0, 1}));
-  marks.clear();
-  markSelfIntersections({{1, 3}}, marks);
-  EXPECT_TRUE(marks.empty());
-}
-
 TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMesh) {
   std::mt19937_64 random(7);
   for (const Mesh& mesh : {unevenSoup(6, 300, 300, 5), knottedTube(40)}) {

@@ -254,23 +254,5 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
   }
 }
 
-TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
-  const Scene scene = cutTorus(60, 24, 0.4);
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  const Eigen::Vector3d shift(5.0, 6.0, -7.0);
-  const double scale = 1e-3;
-  Scene moved = scene;
-  moved.points = (scale * turn * scene.points).colwise() + shift;
-  for (double& length : moved.graph.graph.lengths)
-    length *= scale;
-  const Handle a = diagnose(scene).handles.at(0);
-  const Handle b = diagnose(moved).handles.at(0);
-  EXPECT_EQ(a.edges, b.edges);
-  EXPECT_EQ(a.vertices, b.vertices);
-  // The shift costs a factor of 1e4 of the digits. The box turns, too.
-  EXPECT_NEAR(b.size, scale * a.size, 0.5 * scale * a.size);
-  EXPECT_LT((b.center - (scale * turn * a.center + shift)).norm(), 1e-13);
-}
-
 }  // namespace
 }  // namespace spherical_param::test
