@@ -239,30 +239,6 @@ inline Execution onThreads(int threads) {
   return execution;
 }
 
-/// Execution that reports the fractions of progress to a callback, which may be empty.
-inline Execution reportingTo(const std::function<bool(double)>& callback) {
-  Execution execution;
-  if (callback)
-    execution.progress = [callback](const Progress& progress) {
-      return callback(progress.fraction);
-    };
-  return execution;
-}
-
-/// The fractions that run(callback) reports; none if one of them comes from another thread.
-template <typename Run>
-std::vector<double> fractionsOf(const Run& run) {
-  std::vector<double> fractions;
-  const std::thread::id caller = std::this_thread::get_id();
-  bool is_from_caller = true;
-  run([&](double fraction) {
-    is_from_caller = is_from_caller && std::this_thread::get_id() == caller;
-    fractions.push_back(fraction);
-    return true;
-  });
-  return is_from_caller ? fractions : std::vector<double>();
-}
-
 /// Whether there are some, all in [0, 1].
 inline bool areFractions(const std::vector<double>& fractions) {
   return !fractions.empty() && std::all_of(fractions.begin(), fractions.end(), [](double fraction) {

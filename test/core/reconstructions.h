@@ -1,6 +1,7 @@
 #pragma once
 
 #include "helpers.h"
+#include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
@@ -112,6 +113,35 @@ inline void expectGuarantees(const Positions& points, const Surface& result) {
   const double rounding = 1e-9 * std::pow(vertices.colwise().norm().maxCoeff(), 3.0);
   EXPECT_NEAR(result.measures.volume, volumeOf(vertices, result.triangles), rounding);
   EXPECT_GE(result.measures.volume, 0.0);
+}
+
+/// A surface in one piece over all vertices, without intersections, of a genus and with a number of
+/// openings, the longest first, whose loops are those of an independent walk.
+inline void expectSound(const Surface& result, Index genus, std::size_t openings) {
+  EXPECT_TRUE(result.topology.isSurface());
+  EXPECT_EQ(result.topology.genus, genus);
+  EXPECT_EQ(result.genus(), static_cast<std::size_t>(genus));
+  EXPECT_EQ(result.topology.euler_characteristic, 2 - 2 * genus - static_cast<long long>(openings));
+  EXPECT_TRUE(result.self_intersections.empty());
+  // There is no map of a handle to a sphere.
+  EXPECT_EQ(result.sphere.cols(), genus > 0 ? 0 : static_cast<Eigen::Index>(result.vertexCount()));
+  EXPECT_EQ(result.boundary.size(), openings);
+  EXPECT_EQ(result.isClosed(), openings == 0);
+  if (openings == 0) {
+    EXPECT_TRUE(
+        isSurfaceOverAll(result.triangles, static_cast<Index>(result.vertexCount()), genus));
+    EXPECT_GT(result.measures.volume, 0.0);
+  }
+  const std::map<Index, Index> next = boundaryOf(result.triangles);
+  std::size_t vertices = 0;
+  for (const std::vector<Index>& loop : result.boundary) {
+    EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
+    EXPECT_LE(loop.size(), result.boundary.front().size());
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      EXPECT_EQ(next.at(loop[i]), loop[(i + 1) % loop.size()]);
+    vertices += loop.size();
+  }
+  EXPECT_EQ(vertices, next.size());
 }
 
 }  // namespace spherical_param::test

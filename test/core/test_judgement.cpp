@@ -1,6 +1,7 @@
 #include "embedding.h"
 #include "graph.h"
 #include "graphs.h"
+#include "handle_shapes.h"
 #include "paper_method.h"
 #include "reconstructions.h"
 #include "spherical_param/self_intersection.h"
@@ -53,14 +54,7 @@ TEST(Judgement, CubeHasItsMeasuresAndItsCreases) {
 }
 
 TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
-  Positions torus(3, 40 * 20);
-  for (Index i = 0; i < 40; ++i)
-    for (Index j = 0; j < 20; ++j) {
-      const double a = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 40.0;
-      const double b = 2.0 * test::kPi * j / 20.0;
-      torus.col(20 * i + j) << (1.0 + 0.5 * std::cos(b)) * std::cos(a),
-          (1.0 + 0.5 * std::cos(b)) * std::sin(a), 0.5 * std::sin(b);
-    }
+  const Positions torus = test::torusCloud(40, 20, 1.0, 0.5);
   const Positions bowl = test::spiralSphere(1500).rightCols(1100);  // without its top
   const Positions parts = test::twoSpheres(200, 160, 6.0);
   for (Options options : test::bothMethods()) {

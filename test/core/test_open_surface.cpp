@@ -1,5 +1,6 @@
 #include "open_surface.h"
 
+#include "handle_shapes.h"
 #include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
@@ -16,39 +17,17 @@ Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
   return options;
 }
 
-/// A manifold over all vertices whose boundary is as an independent walk finds it.
-void expectSound(const Surface& result, std::size_t boundaries) {
-  EXPECT_TRUE(result.topology.manifold());
-  EXPECT_TRUE(result.topology.oriented);
-  EXPECT_TRUE(result.topology.unused_vertices.empty());
-  EXPECT_EQ(result.topology.components, 1U);
-  EXPECT_EQ(result.topology.euler_characteristic, 2 - static_cast<long long>(boundaries));
-  EXPECT_TRUE(result.self_intersections.empty());
-  EXPECT_EQ(result.boundary.size(), boundaries);
-  EXPECT_EQ(result.isClosed(), boundaries == 0);
-  const std::map<Index, Index> next = test::boundaryOf(result.triangles);
-  std::size_t vertices = 0;
-  for (const std::vector<Index>& loop : result.boundary) {
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      EXPECT_EQ(next.at(loop[i]), loop[(i + 1) % loop.size()]);
-    vertices += loop.size();
-  }
-  EXPECT_EQ(vertices, next.size());
-}
-
 TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
-  expectSound(test::surfaceOf(test::hemisphere(700), leftOpen()), 1);
-  expectSound(test::surfaceOf(test::tube(20, 40), leftOpen()), 2);
+  test::expectSound(test::surfaceOf(test::hemisphere(700), leftOpen()), 0, 1);
+  test::expectSound(test::surfaceOf(test::tube(20, 40), leftOpen()), 0, 2);
   for (const Index holes : {1, 2, 20})
-    expectSound(test::surfaceOf(sphereWithHoles(4000, holes, 0.2), leftOpen()),
-                static_cast<std::size_t>(holes));
+    test::expectSound(test::surfaceOf(sphereWithHoles(4000, holes, 0.2), leftOpen()), 0,
+                      static_cast<std::size_t>(holes));
   // An opening of more than half of the sphere.
-  expectSound(
-      test::surfaceOf(test::pointsWhere(test::spiralSphere(3000),
-                                        [](const Eigen::Vector3d& p) { return p.z() < -0.4; }),
-                      leftOpen()),
-      1);
-  expectSound(test::surfaceOf(test::spiralSphere(600), leftOpen()), 0);
+  const Positions bowl = test::pointsWhere(test::spiralSphere(3000),
+                                           [](const Eigen::Vector3d& p) { return p.z() < -0.4; });
+  test::expectSound(test::surfaceOf(bowl, leftOpen()), 0, 1);
+  test::expectSound(test::surfaceOf(test::spiralSphere(600), leftOpen()), 0, 0);
 }
 
 TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
@@ -60,7 +39,7 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
         test::pointsWhere(wave, [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.4; }),
         leftOpen());
     EXPECT_GE(result.boundary.size(), 2U) << seed;
-    expectSound(result, result.boundary.size());
+    test::expectSound(result, 0, result.boundary.size());
   }
 }
 
@@ -93,7 +72,7 @@ TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
                             return std::min((p - a).norm(), (p - b).norm()) > radius;
                           }),
         leftOpen());
-    expectSound(result, result.boundary.size());
+    test::expectSound(result, 0, result.boundary.size());
     EXPECT_GE(result.boundary.size(), 1U);
     EXPECT_LE(result.boundary.size(), 2U);
   }
@@ -106,7 +85,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   EXPECT_THROW(reconstruct(patch, test::sphere()), InvalidInput);
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
     const Surface result = test::surfaceOf(patch, leftOpen(mode));
-    expectSound(result, 2);
+    test::expectSound(result, 0, 2);
     double rim = 0.0;  // twice the area that the boundary encloses
     for (const auto& loop : result.boundary)
       for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -122,20 +101,12 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
     Positions narrow(3, 9 * rows);
     for (int i = 0; i < 9 * rows; ++i)
       narrow.col(i) << i / rows + 0.01 * (i * i % 7), i % rows + 0.01 * (i * i % 5), 0.0;
-    expectSound(test::surfaceOf(narrow, leftOpen()), 1);
+    test::expectSound(test::surfaceOf(narrow, leftOpen()), 0, 1);
   }
   // Of a line there is no surface.
   Positions line = Positions::Zero(3, 50);
   line.row(0).setLinSpaced(0.0, 1.0);
   EXPECT_THROW(reconstruct(line, leftOpen()), InvalidInput);
-}
-
-TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
-  const Positions points = test::randomSphere(1500, 3);
-  const Surface closed = test::surfaceOf(points, test::sphere());
-  EXPECT_TRUE(closed.openings.empty());
-  for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto})
-    EXPECT_EQ(test::surfaceOf(points, leftOpen(mode)).triangles, closed.triangles);
 }
 
 TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
@@ -178,13 +149,14 @@ TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
   const Surface small =
       test::surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
-  expectSound(small, 0);
+  test::expectSound(small, 0, 0);
   ASSERT_EQ(small.openings.size(), 1U);
   EXPECT_TRUE(small.openings[0].is_filled);
-  expectSound(test::surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 1);
+  test::expectSound(test::surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 0,
+                    1);
   // A tube without ends may be one with flat ends.
   const Surface tube = test::surfaceOf(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
-  expectSound(tube, 0);
+  test::expectSound(tube, 0, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }
 
@@ -196,59 +168,22 @@ TEST(OpenSurface, HolesAreFilledUpToASize) {
   const Opening& second = open.openings[1];
   Options by_edges = leftOpen();
   by_edges.fill_holes = static_cast<int>(second.loop.size());
-  expectSound(test::surfaceOf(points, by_edges), 1);
+  test::expectSound(test::surfaceOf(points, by_edges), 0, 1);
   Options by_area = leftOpen();
   by_area.fill_holes_area = 1.01 * second.area;
-  expectSound(test::surfaceOf(points, by_area), 1);
+  test::expectSound(test::surfaceOf(points, by_area), 0, 1);
   by_area.fill_holes_area = 10.0;
-  expectSound(test::surfaceOf(points, by_area), 0);
-}
-
-TEST(OpenSurface, DoesNotDependOnOrderPlaceAndScale) {
-  const Positions points = sphereWithHoles(2500, 3, 0.3);
-  const Surface result = test::surfaceOf(points, leftOpen());
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
-  const Surface moved =
-      test::surfaceOf((turn * points).colwise() + Eigen::Vector3d(7.0, -3.0, 11.0), leftOpen());
-  ASSERT_EQ(moved.openings.size(), 3U);
-  const Surface scaled = test::surfaceOf(64.0 * points, leftOpen());
-  EXPECT_EQ(scaled.triangles, result.triangles);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(scaled.openings[i].width, 64.0 * result.openings[i].width);
-    EXPECT_EQ(scaled.openings[i].area, 4096.0 * result.openings[i].area);
-    EXPECT_EQ(moved.openings[i].loop.size(), result.openings[i].loop.size());
-  }
-  const Surface reversed = test::surfaceOf(points.rowwise().reverse(), leftOpen());
-  const auto last = static_cast<Index>(points.cols()) - 1;
-  EXPECT_EQ(test::canonical(reversed.triangles.unaryExpr([=](Index v) { return last - v; })),
-            test::canonical(result.triangles));
+  test::expectSound(test::surfaceOf(points, by_area), 0, 0);
 }
 
 TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
-  // A torus with a hole, and a Moebius band.
-  Positions torus(3, 80 * 30);
-  Positions band(3, 160 * 12);
-  for (int i = 0; i < 80; ++i)
-    for (int j = 0; j < 30; ++j) {
-      const double u = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 80;
-      const double v = 2.0 * test::kPi * j / 30;
-      torus.col(i * 30 + j) << (2.5 + std::cos(v)) * std::cos(u), (2.5 + std::cos(v)) * std::sin(u),
-          std::sin(v);
-    }
-  for (int i = 0; i < 160; ++i)
-    for (int j = 0; j < 12; ++j) {
-      const double u = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 160;
-      const double v = 0.1 * (j - 5.5);
-      const double radius = 2.5 + v * std::cos(u / 2.0);
-      band.col(i * 12 + j) << radius * std::cos(u), radius * std::sin(u), v * std::sin(u / 2.0);
-    }
-  const Positions holed = test::pointsWhere(torus, [](const Eigen::Vector3d& p) {
-    return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
-  });
+  const Positions holed =
+      test::pointsWhere(test::torusCloud(80, 30, 2.5, 1.0), [](const Eigen::Vector3d& p) {
+        return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
+      });
   Options options = leftOpen();
   options.handles = HandleMode::None;
-  for (const Positions& points : {holed, band}) {
+  for (const Positions& points : {holed, test::moebiusBand(160, 12)}) {
     const Surface result = test::surfaceOf(points, options);
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);

@@ -144,35 +144,5 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
   }
 }
 
-TEST(ProgressCallback, EndsReconstructAtEveryCall) {
-  struct CallersFault {};  // what no library throws
-  Options smoothed;
-  smoothed.smoothing = 2;
-  smoothed.embedding.history_vertices = 10;
-  Options paper = test::paper();
-  paper.paper.max_iterations = 20;
-  const Positions points = test::withNoise(test::spiralSphere(60), 0.1, 3);
-  for (Options options : {smoothed, paper}) {
-    const auto sphere_of = [&](const std::function<bool(double)>& callback) {
-      options.progress = test::reportingTo(callback).progress;
-      return test::surfaceOf(points, options).sphere;
-    };
-    const Positions plain = sphere_of({});
-    const std::size_t calls = test::fractionsOf([&](const auto& callback) {
-                                EXPECT_EQ(sphere_of(callback), plain);
-                              }).size();
-    ASSERT_GT(calls, 0U);
-    for (std::size_t last = 1; last <= calls; ++last) {
-      std::size_t seen = 0;
-      EXPECT_THROW(sphere_of([&](double) { return ++seen < last; }), Cancelled);
-      EXPECT_EQ(seen, last);  // it was not called again
-      EXPECT_THROW(sphere_of([&](double) { return --seen > 0 ? true : throw CallersFault(); }),
-                   CallersFault);
-      EXPECT_EQ(seen, 0U);
-    }
-    EXPECT_EQ(sphere_of({}), plain);
-  }
-}
-
 }  // namespace
 }  // namespace spherical_param

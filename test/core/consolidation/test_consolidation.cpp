@@ -132,15 +132,6 @@ TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
   EXPECT_EQ(consolidate(with_lone).points.rightCols<1>(), lone);
 }
 
-TEST(Consolidation, APowerOfTwoScalesTheResult) {
-  const Positions points = withNoise(randomSphere(2000, 8), 0.02, 9);
-  const Consolidation one = consolidate(points);
-  const Consolidation scaled = consolidate(1024.0 * points);
-  EXPECT_EQ(scaled.points, 1024.0 * one.points);
-  EXPECT_EQ(scaled.point_of_input, one.point_of_input);
-  EXPECT_EQ(scaled.report.noise, 1024.0 * one.report.noise);
-}
-
 TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   const Positions base = withNoise(randomSphere(2000, 10), 0.02, 11);
   const Positions points = horizontally(base, base.leftCols(50));
