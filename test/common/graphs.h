@@ -4,11 +4,7 @@
 #include "helpers.h"
 #include "local_delaunay_graph.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <set>
-#include <utility>
-#include <vector>
 
 /// Neighbour graphs for tests of the core's stages.
 namespace spherical_param::test {

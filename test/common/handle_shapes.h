@@ -4,13 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <utility>
-#include <vector>
 
 /// Clouds of surfaces with handles.
 namespace spherical_param::test {

@@ -2,10 +2,7 @@
 
 #include "helpers.h"
 
-#include <functional>
-#include <map>
 #include <set>
-#include <vector>
 
 /// Clouds of surfaces with openings, and checks of their meshes.
 namespace spherical_param::test {

@@ -15,14 +15,10 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <functional>
 #include <iterator>
 #include <optional>
 #include <string>
-#include <thread>
 #include <type_traits>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

@@ -12,12 +12,9 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

@@ -8,11 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <string>
-#include <vector>
 
 /// Clouds, options and checks for tests of reconstruct().
 namespace spherical_param::test {

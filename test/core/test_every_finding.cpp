@@ -6,13 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

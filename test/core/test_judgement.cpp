@@ -8,11 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <numeric>
 #include <set>
-#include <vector>
 
 namespace spherical_param {
 namespace {

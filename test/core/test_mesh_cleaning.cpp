@@ -7,11 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <string>
-#include <vector>
 
 namespace spherical_param {
 namespace {

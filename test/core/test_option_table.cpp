@@ -5,13 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
 #include <limits>
 #include <ostream>
 #include <set>
 #include <string>
-#include <vector>
 
 namespace spherical_param {
 

@@ -6,18 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <limits>
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

@@ -5,12 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace spherical_param {
 namespace {

@@ -7,13 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

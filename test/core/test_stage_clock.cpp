@@ -8,11 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
-#include <map>
 #include <string>
-#include <thread>
-#include <vector>
 
 namespace spherical_param {
 namespace {

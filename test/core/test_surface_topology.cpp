@@ -12,12 +12,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <map>
 #include <set>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

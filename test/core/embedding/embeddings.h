@@ -8,10 +8,6 @@
 #include "multilevel_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <cmath>
-#include <random>
-#include <vector>
-
 /// A surface and short calls for the tests of the multilevel embedding and its parts.
 namespace spherical_param::test {
 

@@ -5,10 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

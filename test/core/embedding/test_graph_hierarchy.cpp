@@ -6,14 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <limits>
-#include <map>
-#include <numeric>
-#include <utility>
-#include <vector>
 
 namespace spherical_param {
 namespace {

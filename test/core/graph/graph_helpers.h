@@ -7,12 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <random>
 #include <set>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::test {
 

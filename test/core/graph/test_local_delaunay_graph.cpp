@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <cmath>
 #include <limits>
 
 namespace spherical_param {

@@ -4,9 +4,6 @@
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
 
-#include <cmath>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

@@ -8,9 +8,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <utility>
-
 namespace spherical_param {
 namespace {
 

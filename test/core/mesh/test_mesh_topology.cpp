@@ -5,11 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <map>
-#include <random>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

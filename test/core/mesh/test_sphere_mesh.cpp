@@ -6,11 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <random>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

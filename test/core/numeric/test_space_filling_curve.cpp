@@ -4,11 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <random>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {

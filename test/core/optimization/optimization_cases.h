@@ -11,14 +11,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <random>
-#include <utility>
-#include <vector>
-
 /// Meshes to optimise, and the energy from its definition.
 namespace spherical_param::test {
 

@@ -6,10 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
-#include <random>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

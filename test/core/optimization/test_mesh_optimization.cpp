@@ -7,10 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

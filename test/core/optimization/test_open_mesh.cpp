@@ -4,10 +4,7 @@
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 
-#include <array>
-#include <cmath>
 #include <set>
-#include <vector>
 
 namespace spherical_param {
 namespace {

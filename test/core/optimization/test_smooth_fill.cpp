@@ -6,8 +6,6 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
 
-#include <numeric>
-
 namespace spherical_param {
 namespace {
 

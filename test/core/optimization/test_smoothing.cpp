@@ -7,9 +7,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <utility>
-
 namespace spherical_param::test {
 namespace {
 

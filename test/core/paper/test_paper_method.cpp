@@ -7,10 +7,7 @@
 #include "qhull.h"
 #include "union_find.h"
 
-#include <algorithm>
-#include <array>
 #include <tuple>
-#include <vector>
 
 namespace spherical_param {
 namespace {

@@ -5,9 +5,6 @@
 #include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <cmath>
-#include <vector>
-
 /// Clouds to diagnose, with meshes that are spheres and graphs that show what the clouds are.
 namespace spherical_param::test {
 

@@ -7,14 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
 #include <set>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

@@ -9,12 +9,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
-#include <vector>
 
 namespace spherical_param::test {
 namespace {

@@ -6,11 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <optional>
-#include <random>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {

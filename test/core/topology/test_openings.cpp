@@ -5,10 +5,7 @@
 #include "open_shapes.h"
 #include "topologies.h"
 
-#include <cmath>
-#include <functional>
 #include <set>
-#include <vector>
 
 namespace spherical_param {
 namespace {

@@ -4,7 +4,6 @@
 #include "triangulations.h"
 
 #include <set>
-#include <vector>
 
 namespace spherical_param {
 namespace {

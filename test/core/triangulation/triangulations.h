@@ -6,9 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
 /// Sets of directions and checks for the tests of the triangulation.
 namespace spherical_param::test {
 
