@@ -75,12 +75,16 @@ struct Inputs {
   Mapped few = firstBlob().over(spiralSphere(size / 30 + 30));
 };
 
-/// A function of the library. \return all that it answers.
+/// \return all that a function of the library answers.
+using Run = std::function<Numbers(const Inputs&, const Execution&)>;
+
 struct Function {
   std::string name;
-  std::function<Numbers(const Inputs&, const Execution&)> run;
+  Run run;
   std::optional<double> last = {};  ///< fraction that its progress ends with; none: it has none
 };
+
+using Add = std::function<void(const std::string&, std::optional<double> last, const Run&)>;
 
 template <typename Options>
 Options with(Options options, const Execution& execution) {
@@ -107,150 +111,129 @@ Numbers numbersOf(const Result& result) {
   return numbers;
 }
 
-void addReconstructions(std::vector<Function>& functions) {
-  const auto add = [&](const char* name, Positions Inputs::*cloud, const Options& options) {
-    functions.push_back({std::string("reconstruct(), ") + name,
-                         [=](const Inputs& in, const Execution& e) {
-                           return numbersOf(reconstruct(in.*cloud, with(options, e)));
-                         },
-                         1.0});
+void addReconstructions(const Add& add) {
+  const auto add_of = [&](const std::string& what, Positions Inputs::*cloud,
+                          const Options& options) {
+    add("reconstruct(), " + what, 1.0, [=](const Inputs& in, const Execution& e) {
+      return numbersOf(reconstruct(in.*cloud, with(options, e)));
+    });
   };
   Options smoothed = watched();
   smoothed.smoothing = 2;
-  add("smoothed", &Inputs::rough, smoothed);
+  add_of("smoothed", &Inputs::rough, smoothed);
   Options converged;
   converged.embedding.tolerance = 1e-7;
-  add("converged", &Inputs::cloud, converged);
-  Options paper_with_all = watched(paper());
-  paper_with_all.paper.max_iterations = 5;
+  add_of("converged", &Inputs::cloud, converged);
+  Options published = watched(paper());
+  published.paper.max_iterations = 5;
   for (const EdgeWeights weights :
        {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive}) {
-    paper_with_all.paper.weights = weights;
-    add("as published", &Inputs::rough, paper_with_all);
+    published.paper.weights = weights;
+    add_of("as published", &Inputs::rough, published);
   }
   Options open;
   open.surface = SurfaceMode::Open;
-  add("open", &Inputs::holed, open);
+  add_of("open", &Inputs::holed, open);
   Options filled;
   filled.surface = SurfaceMode::Closed;
   filled.fill = FillMode::Smooth;
-  add("filled", &Inputs::holed, filled);
-  add("with a handle", &Inputs::torus, {});
+  add_of("filled", &Inputs::holed, filled);
+  add_of("with a handle", &Inputs::torus, {});
   Options parts;
   parts.parts = PartsMode::Each;
   parts.outliers = OutlierMode::Deviation;
   parts.consolidation = ConsolidationMode::Auto;
-  add("in parts", &Inputs::scattered, parts);
+  add_of("in parts", &Inputs::scattered, parts);
 }
 
-void addFunctionsOfTheCore(std::vector<Function>& functions) {
+void addFunctionsOfTheCore(const Add& add) {
   for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation})
-    functions.push_back({"findOutliers()",
-                         [mode](const Inputs& in, const Execution& e) {
-                           Options options;
-                           options.outliers = mode;
-                           return Numbers(findOutliers(in.scattered, with(options, e)));
-                         },
-                         1.0});
-  functions.push_back({"findParts()",
-                       [](const Inputs& in, const Execution& e) {
-                         return Numbers(findParts(in.scattered, with(Options(), e)));
-                       },
-                       1.0});
-  functions.push_back({"triangulateSphere()",
-                       [](const Inputs& in, const Execution& e) {
-                         return Numbers(triangulateSphere(in.cloud.colwise().normalized(), e));
-                       },
-                       0.0});
-  functions.push_back({"findSelfIntersections()",
-                       [](const Inputs& in, const Execution& e) {
-                         const auto& [points, triangles] = in.knot;
-                         return Numbers(findSelfIntersections(points, triangles, e),
-                                        findSelfIntersectionsOf(points, triangles, {0, 5}, e));
-                       },
-                       1.0});
-  functions.push_back(
-      {"checkTopology()", [](const Inputs& in, const Execution& e) {
-         const MeshTopology of =
-             checkTopology(in.damaged, static_cast<std::size_t>(in.size), e.threads);
-         return Numbers(of.vertices, of.edges, of.components, of.oriented, of.euler_characteristic,
-                        of.nonmanifold_vertices, of.unused_vertices);
-       }});
-  functions.push_back({"measureMesh()", [](const Inputs& in, const Execution& e) {
-                         const MeshMeasures of = measureMesh(in.cloud, in.triangles, e.threads);
-                         return Numbers(of.volume, of.area, of.mean_edge_length, of.centroid,
-                                        of.inertia);
-                       }});
+    add("findOutliers()", 1.0, [mode](const Inputs& in, const Execution& e) {
+      Options options;
+      options.outliers = mode;
+      return Numbers(findOutliers(in.scattered, with(options, e)));
+    });
+  add("findParts()", 1.0, [](const Inputs& in, const Execution& e) {
+    return Numbers(findParts(in.scattered, with(Options(), e)));
+  });
+  add("triangulateSphere()", 0.0, [](const Inputs& in, const Execution& e) {
+    return Numbers(triangulateSphere(in.cloud.colwise().normalized(), e));
+  });
+  add("findSelfIntersections()", 1.0, [](const Inputs& in, const Execution& e) {
+    const auto& [points, triangles] = in.knot;
+    return Numbers(findSelfIntersections(points, triangles, e),
+                   findSelfIntersectionsOf(points, triangles, {0, 5}, e));
+  });
+  add("checkTopology()", {}, [](const Inputs& in, const Execution& e) {
+    const MeshTopology of = checkTopology(in.damaged, static_cast<std::size_t>(in.size), e.threads);
+    return Numbers(of.vertices, of.edges, of.components, of.oriented, of.euler_characteristic,
+                   of.nonmanifold_vertices, of.unused_vertices);
+  });
+  add("measureMesh()", {}, [](const Inputs& in, const Execution& e) {
+    const MeshMeasures of = measureMesh(in.cloud, in.triangles, e.threads);
+    return Numbers(of.volume, of.area, of.mean_edge_length, of.centroid, of.inertia);
+  });
 }
 
-void addMaps(std::vector<Function>& functions) {
-  functions.push_back({"computeSphereMap()",
-                       [](const Inputs& in, const Execution& e) {
-                         SphereMapOptions options;
-                         options.sweeps = 2;
-                         const auto& [points, triangles, sphere, caps] = in.bumps;
-                         return Numbers(
-                             computeSphereMap(points, triangles, sphere, with(options, e)).sphere);
-                       },
-                       1.0});
-  functions.push_back({"morphSurfaces()",
-                       [](const Inputs& in, const Execution& e) {
-                         MorphOptions options;
-                         const Mapped many = firstBlob().over(spiralSphere(in.size / 4));
-                         for (Index i = 2; i < in.few.points.cols(); i += 48)
-                           options.pairs.push_back({i, nearestTo(in.few.sphere.col(i), many)});
-                         const MorphResult morph =
-                             morphSurfaces(in.few.surface(), many.surface(), with(options, e));
-                         return Numbers(morph.rotation, morph.alignment_error, morph.first,
-                                        morph.second, morph.sphere, morph.triangles,
-                                        morph.worst_pair);
-                       },
-                       1.0});
-  functions.push_back({"measureMapDistortion()", [](const Inputs& in, const Execution& e) {
-                         const MapDistortion of =
-                             measureMapDistortion(randomPositions(in.bumps.points.cols(), 4),
+void addMaps(const Add& add) {
+  add("computeSphereMap()", 1.0, [](const Inputs& in, const Execution& e) {
+    SphereMapOptions options;
+    options.sweeps = 2;
+    const Mapped& mesh = in.bumps;
+    return Numbers(
+        computeSphereMap(mesh.points, mesh.triangles, mesh.sphere, with(options, e)).sphere);
+  });
+  add("morphSurfaces()", 1.0, [](const Inputs& in, const Execution& e) {
+    MorphOptions options;
+    const Mapped many = firstBlob().over(spiralSphere(in.size / 4));
+    for (Index i = 2; i < in.few.points.cols(); i += 48)
+      options.pairs.push_back({i, nearestTo(in.few.sphere.col(i), many)});
+    const MorphResult of = morphSurfaces(in.few.surface(), many.surface(), with(options, e));
+    return Numbers(of.rotation, of.alignment_error, of.first, of.second, of.sphere, of.triangles,
+                   of.worst_pair);
+  });
+  add("measureMapDistortion()", {}, [](const Inputs& in, const Execution& e) {
+    const MapDistortion of = measureMapDistortion(randomPositions(in.bumps.points.cols(), 4),
                                                   in.bumps.triangles, in.bumps.sphere, e.threads);
-                         return Numbers(of.mean_angle_difference, of.stretch_efficiency,
-                                        of.angle.mean, of.angle.p95, of.area.mean, of.area.max);
-                       }});
-  functions.push_back({"SphereSurface", [](const Inputs& in, const Execution& e) {
-                         const SphereSurface surface =
-                             in.bumps.surface(SurfaceFit::Smooth, e.threads);
-                         const SurfaceSamples of = surface.evaluate(randomSphere(in.size / 4, 2));
-                         Numbers numbers(surface.area(), of.positions, of.normals);
-                         for (const SphereLocation& location : of.locations)
-                           numbers.add(location.weights);
-                         return numbers;
-                       }});
-  functions.push_back({"sampleEvenly()", [](const Inputs& in, const Execution& e) {
-                         const SurfacePoints of =
-                             sampleEvenly(in.few.surface(SurfaceFit::Linear, e.threads), 1000, 7);
-                         return Numbers(of.points, of.normals);
-                       }});
-  functions.push_back(
-      {"spherical harmonics", [](const Inputs& in, const Execution& e) {
-         const SphericalHarmonics of = computeSphericalHarmonics(in.few.surface(), 12, e.threads);
-         return Numbers(of.coefficients, of.rms_residual,
-                        evaluateSphericalHarmonics(of, randomSphere(in.size / 4, 2), e.threads));
-       }});
+    return Numbers(of.mean_angle_difference, of.stretch_efficiency, of.angle.mean, of.angle.p95,
+                   of.area.mean, of.area.max);
+  });
+  add("SphereSurface", {}, [](const Inputs& in, const Execution& e) {
+    const SphereSurface surface = in.bumps.surface(SurfaceFit::Smooth, e.threads);
+    const SurfaceSamples of = surface.evaluate(randomSphere(in.size / 4, 2));
+    Numbers numbers(surface.area(), of.positions, of.normals);
+    for (const SphereLocation& location : of.locations)
+      numbers.add(location.weights);
+    return numbers;
+  });
+  add("sampleEvenly()", {}, [](const Inputs& in, const Execution& e) {
+    const SurfacePoints of = sampleEvenly(in.few.surface(SurfaceFit::Linear, e.threads), 1000, 7);
+    return Numbers(of.points, of.normals);
+  });
+  add("spherical harmonics", {}, [](const Inputs& in, const Execution& e) {
+    const SphericalHarmonics of = computeSphericalHarmonics(in.few.surface(), 12, e.threads);
+    return Numbers(of.coefficients, of.rms_residual,
+                   evaluateSphericalHarmonics(of, randomSphere(in.size / 4, 2), e.threads));
+  });
   for (const SphereChart chart :
        {SphereChart::Equirectangular, SphereChart::Octahedral, SphereChart::CubeMap})
-    functions.push_back(
-        {"textures", [chart](const Inputs& in, const Execution& e) {
-           const TextureAtlas atlas =
-               makeTextureAtlas(in.few.triangles, in.few.sphere, {chart, 0.1});
-           const BakeOptions options{100, 5, e.threads};
-           const TextureImage colors = bakeColors(atlas, 100.0 * in.few.sphere.cwiseAbs(), options);
-           return Numbers(colors.pixels, colors.covered,
-                          bakeCheckerboard(atlas, in.few.sphere, 8, options).pixels);
-         }});
+    add("textures", {}, [chart](const Inputs& in, const Execution& e) {
+      const TextureAtlas atlas = makeTextureAtlas(in.few.triangles, in.few.sphere, {chart, 0.1});
+      const BakeOptions options{100, 5, e.threads};
+      const TextureImage colors = bakeColors(atlas, 100.0 * in.few.sphere.cwiseAbs(), options);
+      return Numbers(colors.pixels, colors.covered,
+                     bakeCheckerboard(atlas, in.few.sphere, 8, options).pixels);
+    });
 }
 
 std::vector<Function> allFunctions() {
   std::vector<Function> functions;
-  addReconstructions(functions);
-  addFunctionsOfTheCore(functions);
-  addMaps(functions);
+  const Add add = [&](const std::string& name, std::optional<double> last, const Run& run) {
+    functions.push_back({name, run, last});
+  };
+  addReconstructions(add);
+  addFunctionsOfTheCore(add);
+  addMaps(add);
   return functions;
 }
 
