@@ -59,37 +59,31 @@ void expectConsistent(const Positions& input, const Consolidation& result) {
   EXPECT_LE(result.report.rms_displacement, result.report.max_displacement);
 }
 
-TEST(Consolidation, NoiseIsTakenOffAndMeasured) {
-  const Positions points = withNoise(randomSphere(5000, 3), 0.01, 4);
-  const Consolidation result = consolidate(points);
-  expectConsistent(points, result);
-  EXPECT_LT(roughnessOf(result.points), 0.45 * roughnessOf(points));
-  EXPECT_NEAR(result.report.noise, 0.01, 0.002);
-  EXPECT_GT(result.report.merged, 0U);
-  EXPECT_LT(result.report.merged, 1000U);
-}
-
-TEST(Consolidation, LayersBecomeOne) {
-  const Positions points = twoLayers(4000, 0.03);
-  const Consolidation result = consolidate(points);
-  expectConsistent(points, result);
-  EXPECT_NEAR(roughnessOf(points), 0.015, 1e-9);
-  EXPECT_LT(roughnessOf(result.points), 0.6 * roughnessOf(points));
-  EXPECT_GT(shortestDistance(result.points), 0.002);
+TEST(Consolidation, NoiseIsTakenOffAndMeasuredAndLayersBecomeOne) {
+  const Positions noisy = withNoise(randomSphere(5000, 3), 0.01, 4);
+  const Positions layers = twoLayers(4000, 0.03);
+  // Noise of two spacings is merged away.
+  const Positions thick = withNoise(randomSphere(60000, 5), 0.03, 6);
+  struct Case {
+    const Positions& points;
+    double roughness;   ///< that is left
+    Index least, most;  ///< points that are merged
+  };
+  for (const auto& [points, roughness, least, most] :
+       {Case{noisy, 0.45, 1, 1000}, Case{layers, 0.6, 1, 8000}, Case{thick, 0.5, 30000, 60000}}) {
+    const Consolidation result = consolidate(points);
+    expectConsistent(points, result);
+    EXPECT_LT(roughnessOf(result.points), roughness * roughnessOf(points));
+    EXPECT_GE(result.report.merged, static_cast<std::size_t>(least));
+    EXPECT_LT(result.report.merged, static_cast<std::size_t>(most));
+  }
+  EXPECT_NEAR(consolidate(noisy).report.noise, 0.01, 0.002);
+  EXPECT_GT(shortestDistance(consolidate(layers).points), 0.002);
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = test::surfaceOf(points, options);
+  const Surface mesh = test::surfaceOf(layers, options);
   EXPECT_TRUE(mesh.self_intersections.empty());
   EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * test::kPi);
-}
-
-TEST(Consolidation, NoiseOfSeveralSpacingsIsMergedAway) {
-  // The spacing is 0.014.
-  const Positions points = withNoise(randomSphere(60000, 5), 0.03, 6);
-  const Consolidation result = consolidate(points);
-  expectConsistent(points, result);
-  EXPECT_LT(result.points.cols(), 30000);
-  EXPECT_LT(roughnessOf(result.points), 0.5 * roughnessOf(points));
 }
 
 TEST(Consolidation, ThinLimbsAreNoThickNoise) {

@@ -188,30 +188,6 @@ TEST(PaperEmbedding, CentringUndoesAPassingCollapse) {
   EXPECT_LT(result.report.centroid_norm, 0.1);
 }
 
-TEST(PaperEmbedding, ObserversSeeEveryIteration) {
-  const Graph graph = test::dentedCloud(5000).graph;
-  PaperOptions options;
-  options.max_iterations = 12;
-  std::vector<internal::EmbeddingState> states;
-  std::vector<Positions> spheres;
-  const Embedding seen =
-      embed(graph, spiralSphere(5000), options, 1e-8, [&](const internal::EmbeddingState& state) {
-        states.push_back(state);
-        spheres.push_back(state.directions());
-      });
-  ASSERT_EQ(states.size(), 14U);
-  for (std::size_t i = 0; i < 13; ++i) {
-    EXPECT_EQ(states[i].step, EmbeddingStep::Iteration);
-    EXPECT_EQ(states[i].iteration, static_cast<int>(i));
-    EXPECT_EQ(states[i].residual, seen.report.residuals[i]);
-    // The residual reported is that of the state.
-    EXPECT_NEAR(meanTangentialLaplacian(graph, spheres[i], options.weights), *states[i].residual,
-                1e-9 * *states[i].residual);
-  }
-  EXPECT_EQ(states.back().step, EmbeddingStep::End);
-  EXPECT_EQ(spheres.back(), seen.directions);
-}
-
 TEST(PaperHull, IsThatOfQhullOrWhereItLeavesPointsOutTheExactOne) {
   const Positions sphere = randomSphere(200, 1);
   const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
