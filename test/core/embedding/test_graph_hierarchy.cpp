@@ -44,101 +44,73 @@ bool areJoined(const Graph& graph, Index i, Index j) {
   return std::binary_search(row.begin(), row.end(), j);
 }
 
-/// One level over a random sphere.
-class GraphHierarchyOneLevel : public testing::Test {
-protected:
-  const Graph fine_ = sphereGraph(randomSphere(600, 5));
-  const GraphHierarchy hierarchy_ = buildGraphHierarchy(fine_, 1, 300);
-  const HierarchyLevel& level_ = hierarchy_.levels.at(0);
-  std::vector<std::vector<double>> distances_;  ///< those of all nodes from each seed
-
-  GraphHierarchyOneLevel() {
-    for (const Index seed : level_.seeds)
-      distances_.push_back(distancesFrom(fine_, seed));
-  }
-  /// Of a node from the seed of its aggregate.
-  double distanceFromSeed(std::size_t node) const {
-    return distances_[static_cast<std::size_t>(level_.aggregate_of[node])][node];
-  }
-};
-
-// Which makes them a maximal independent set.
-TEST_F(GraphHierarchyOneLevel, SeedsAreThoseTakenOneAfterTheOther) {
-  ASSERT_EQ(hierarchy_.levels.size(), 1U);
-  const std::size_t n = fine_.size();
-  std::vector<std::pair<double, Index>> order(n);
-  const double sum = std::accumulate(fine_.lengths.begin(), fine_.lengths.end(), 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
+/// A maximal independent set: in the order of a key of the lengths of their edges, each node that
+/// is joined to none before it.
+std::vector<Index> seedsTakenOneAfterTheOther(const Graph& graph) {
+  std::vector<std::pair<double, Index>> order;
+  const double sum = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);
+  for (std::size_t i = 0; i < graph.size(); ++i) {
     double own = 0.0;
-    for (std::size_t e = fine_.offsets[i]; e < fine_.offsets[i + 1]; ++e)
-      own += fine_.lengths[e];
-    const double turn = 2.0 * static_cast<double>(n) / sum * own + 0.6180339887498949;
-    order[i] = {turn - std::floor(turn), static_cast<Index>(i)};
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+      own += graph.lengths[e];
+    const double turn = 2.0 * static_cast<double>(graph.size()) / sum * own + 0.6180339887498949;
+    order.emplace_back(turn - std::floor(turn), static_cast<Index>(i));
   }
   std::sort(order.begin(), order.end());
   std::vector<Index> taken;
   for (const auto& [key, i] : order)
     if (std::none_of(taken.begin(), taken.end(),
-                     [&, node = i](Index other) { return areJoined(fine_, node, other); }))
+                     [&, node = i](Index other) { return areJoined(graph, node, other); }))
       taken.push_back(i);
   std::sort(taken.begin(), taken.end());
-  EXPECT_EQ(level_.seeds, taken);
+  return taken;
 }
 
-TEST_F(GraphHierarchyOneLevel, AggregatesAreGeodesicVoronoiCells) {
-  for (std::size_t i = 0; i < fine_.size(); ++i) {
-    for (const std::vector<double>& other : distances_)
-      EXPECT_LE(distanceFromSeed(i), other[i] * (1.0 + 1e-14)) << "node " << i;
-  }
-}
-
-TEST_F(GraphHierarchyOneLevel, EdgesAreShortestPathsThroughTouchingEdges) {
-  std::map<std::pair<Index, Index>, double> expected;
-  for (std::size_t i = 0; i < fine_.size(); ++i)
-    for (std::size_t e = fine_.offsets[i]; e < fine_.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(fine_.neighbors[e]);
-      const Index a = level_.aggregate_of[i];
-      const Index b = level_.aggregate_of[j];
-      if (a == b)
-        continue;
-      const double length = distanceFromSeed(i) + fine_.lengths[e] + distanceFromSeed(j);
-      const auto [place, is_new] = expected.try_emplace({a, b}, length);
-      place->second = std::min(place->second, length);
+TEST(GraphHierarchy, ALevelHasTheGeodesicVoronoiCellsOfItsSeeds) {
+  const Graph fine = sphereGraph(randomSphere(600, 5));
+  const GraphHierarchy hierarchy = buildGraphHierarchy(fine, 1, 300);
+  ASSERT_EQ(hierarchy.levels.size(), 1U);
+  const HierarchyLevel& level = hierarchy.levels[0];
+  EXPECT_EQ(level.seeds, seedsTakenOneAfterTheOther(fine));
+  std::vector<std::vector<double>> distances;
+  for (const Index seed : level.seeds)
+    distances.push_back(distancesFrom(fine, seed));
+  const auto from_seed = [&](std::size_t node) {
+    return distances[static_cast<std::size_t>(level.aggregate_of[node])][node];
+  };
+  const auto shorten = [](auto& lengths, const auto& key, double length) {
+    const auto place = lengths.try_emplace(key, length).first;
+    place->second = std::min(place->second, length);
+  };
+  std::map<std::pair<Index, Index>, double> edges;  // the shortest paths through touching edges
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    for (const std::vector<double>& other : distances)
+      EXPECT_LE(from_seed(i), other[i] * (1.0 + 1e-14)) << "node " << i;
+    const Index own = level.aggregate_of[i];
+    std::map<Index, double> paths{{own, from_seed(i)}};  // to seeds, by the first edge
+    for (std::size_t e = fine.offsets[i]; e < fine.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(fine.neighbors[e]);
+      const double length = fine.lengths[e] + from_seed(j);
+      shorten(paths, level.aggregate_of[j], length);
+      if (level.aggregate_of[j] != own)
+        shorten(edges, std::pair(own, level.aggregate_of[j]), from_seed(i) + length);
     }
-  ASSERT_EQ(level_.graph.neighbors.size(), expected.size());
-  auto next = expected.begin();
-  for (std::size_t a = 0; a < level_.graph.size(); ++a)
-    for (std::size_t e = level_.graph.offsets[a]; e < level_.graph.offsets[a + 1]; ++e, ++next) {
-      EXPECT_EQ(next->first, std::pair(static_cast<Index>(a), level_.graph.neighbors[e]));
-      EXPECT_NEAR(level_.graph.lengths[e], next->second, 1e-14);
-    }
-}
-
-TEST_F(GraphHierarchyOneLevel, InterpolationGoesByInverseDistanceAndIsExactAtSeeds) {
-  const auto& weights = level_.prolongation;
-  for (std::size_t i = 0; i < fine_.size(); ++i) {
+    // Interpolation goes by inverse distance, and is exact at seeds.
+    if (from_seed(i) == 0.0)
+      paths = {{own, 1.0}};
     const auto node = static_cast<Index>(i);
-    if (distanceFromSeed(i) == 0.0) {
-      EXPECT_EQ(weights.row(node).nonZeros(), 1);
-      EXPECT_EQ(weights.coeff(node, level_.aggregate_of[i]), 1.0);
-      continue;
-    }
-    // Paths to the seeds of the own and the neighbours' aggregates, by the first edge.
-    std::map<Index, double> paths{{level_.aggregate_of[i], distanceFromSeed(i)}};
-    for (std::size_t e = fine_.offsets[i]; e < fine_.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(fine_.neighbors[e]);
-      const double length = distanceFromSeed(j) + fine_.lengths[e];
-      const auto [place, is_new] = paths.try_emplace(level_.aggregate_of[j], length);
-      place->second = std::min(place->second, length);
-    }
-    EXPECT_EQ(static_cast<std::size_t>(weights.row(node).nonZeros()), paths.size());
-    EXPECT_NEAR(weights.row(node).sum(), 1.0, 1e-14);
+    EXPECT_EQ(static_cast<std::size_t>(level.prolongation.row(node).nonZeros()), paths.size());
     double sum = 0.0;
     for (const auto& [aggregate, length] : paths)
       sum += 1.0 / length;
     for (const auto& [aggregate, length] : paths)
-      EXPECT_NEAR(weights.coeff(node, aggregate), 1.0 / length / sum, 1e-12);
+      EXPECT_NEAR(level.prolongation.coeff(node, aggregate), 1.0 / length / sum, 1e-12);
   }
+  ASSERT_EQ(level.graph.neighbors.size(), edges.size());
+  for (std::size_t a = 0; a < level.graph.size(); ++a)
+    for (std::size_t e = level.graph.offsets[a]; e < level.graph.offsets[a + 1]; ++e)
+      EXPECT_NEAR(level.graph.lengths[e],
+                  edges.at({static_cast<Index>(a), level.graph.neighbors[e]}), 1e-14);
 }
 
 TEST(GraphHierarchy, LevelsAreSeveralTimesSmallerConnectedAndSymmetric) {
