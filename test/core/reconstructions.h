@@ -5,7 +5,6 @@
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <string>

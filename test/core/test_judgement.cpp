@@ -1,6 +1,5 @@
 #include "embedding.h"
 #include "graph.h"
-#include "graphs.h"
 #include "handle_shapes.h"
 #include "paper_method.h"
 #include "reconstructions.h"

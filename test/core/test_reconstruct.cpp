@@ -1,5 +1,4 @@
 #include "embedding.h"
-#include "graphs.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"

@@ -9,7 +9,6 @@
 #include "spherical_param/errors.h"
 #include "topology/topologies.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <set>

@@ -2,7 +2,6 @@
 
 #include "core/reconstructions.h"
 #include "graph_helpers.h"
-#include "spherical_param/errors.h"
 
 namespace spherical_param {
 namespace {

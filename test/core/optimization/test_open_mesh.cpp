@@ -1,6 +1,6 @@
 #include "open_mesh.h"
 
-#include "open_shapes.h"
+#include "helpers.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 

@@ -3,7 +3,6 @@
 #include "core/reconstructions.h"
 #include "open_shapes.h"
 #include "pi.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
 
 namespace spherical_param {

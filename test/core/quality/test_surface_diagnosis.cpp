@@ -6,7 +6,6 @@
 #include "openings.h"
 #include "surface_scenes.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <limits>
