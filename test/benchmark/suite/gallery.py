@@ -11,7 +11,7 @@ from .comparison import compare, find_peers
 from .programs import Cloud, Failure
 
 PEERS = ("PCL Poisson", "PCL greedy projection", "Open3D ball pivoting")
-COLUMNS = [("method", "method"), ("triangles", "triangles"), ("boundary", "boundary edges"),
+COLUMNS = [("cloud", "cloud"), ("method", "method"), ("triangles", "triangles"), ("boundary", "boundary edges"),
            ("crowded", "edges of three or more triangles"),
            ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
            ("used", "points used [%]", 1), ("seconds", "time [s]", 1),
@@ -121,19 +121,18 @@ def _draw(path, files, captions, view):
 
 
 def section(context):
-    folder, report, parameters = context.out / "gallery", context.report, {}
+    folder, report, parameters, all_rows = context.out / "gallery", context.report, {}, []
     folder.mkdir(exist_ok=True)
     for row in context.choose([row for row in ROWS if row.name == "rabbit"], ROWS):
         context.say(f"gallery: {row.name}")
         cloud, count = _cloud(context, row)
         compared = compare(context, cloud, find_peers(context, PEERS), parameters, row.options.split(), timeout=120.0)
-        rows = [one for one, _ in compared]
+        all_rows += [{"cloud": row.name, **one} for one, _ in compared]
         made = [(mesh, CAPTION.format(**one)) for one, mesh in compared if mesh]
         files, captions = zip((cloud.points, f"{count:,} points\n"), *made)
         _draw(folder / f"{row.name}.png", files, captions, row.view)
-        report.text(f"### {row.name.capitalize()}")
         report.picture(f"gallery/{row.name}.png", f"{row.name}: the cloud and the mesh of each method")
-        report.table(f"gallery_{row.name}", [one for one in COLUMNS if any(one[0] in other for other in rows)], rows)
+    report.table("gallery", [column for column in COLUMNS if any(column[0] in row for row in all_rows)], all_rows)
     report.blocks["gallery_provenance"] = report.blocks["provenance"]
     report.blocks["gallery_parameters"] = "".join(
         f"- {one['method']}: {one['library']}: {one['parameters']}\n" for one in parameters.values())

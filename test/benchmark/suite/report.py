@@ -9,7 +9,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # The documents whose tables --update-doc replaces: what follows a mark <!-- NAME -->, up to the next blank line.
-DOCUMENTS = [ROOT / "README.md", ROOT / "doc" / "benchmarks.md", ROOT / "doc" / "gallery" / "README.md"]
+DOCUMENTS = [ROOT / "README.md", ROOT / "doc" / "reference.md", ROOT / "doc" / "gallery" / "README.md"]
 MARK = re.compile(r"<!-- (\w+) -->\n(?:[^\n]+\n)*")
 
 
