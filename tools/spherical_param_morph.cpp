@@ -365,7 +365,7 @@ void run(const CommandLine& command_line, Settings& settings) {
     }
   });
   store(settings, clouds, morph, run);
-  const Json json = report(settings, clouds, morph);
+  Json json = report(settings, clouds, morph);
   printFigures(json, run.console);
   run.publish([&] { return json; }, summaryOf(settings, clouds, morph));
   for (std::size_t side = 0; side < 2; ++side) {

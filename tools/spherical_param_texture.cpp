@@ -270,7 +270,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   runLibrary("cannot texture " + inQuotes(settings.input), kReportIt,
              [&] { make(settings, mapped, output, run.console); });
   store(settings, mapped, output, run);
-  const Json json = report(settings, mapped, output);
+  Json json = report(settings, mapped, output);
   printFigures(json, run.console);
   run.publish([&] { return json; }, summaryOf(settings, mapped, output));
   run.add("", findingsOf(settings, mapped));

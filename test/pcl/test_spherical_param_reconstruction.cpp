@@ -84,7 +84,8 @@ TEST_F(SphericalParamReconstruction, IndicesMayHaveAnyOrderAndComeInAllTypesOfPc
 TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSensor) {
   using spherical_param::FacedBy;
   pcl::PointCloud<pcl::PointNormal>::Ptr with_normals(new pcl::PointCloud<pcl::PointNormal>);
-  for (const PointXYZ& p : *makeEllipsoid(300))
+  const auto ellipsoid = makeEllipsoid(300);
+  for (const PointXYZ& p : *ellipsoid)
     with_normals->push_back(pcl::PointNormal(p.x, p.y, p.z, -p.x, -p.y, -p.z));
   pcl::SphericalParamReconstruction<pcl::PointNormal> inward;
   inward.setInputCloud(with_normals);

@@ -117,7 +117,7 @@ void Console::clearBar() {
 }
 
 StageTime Console::end(const std::string& detail) {
-  const StageTime stage{stage_, secondsSince(begin_)};
+  StageTime stage{stage_, secondsSince(begin_)};
   std::array<char, 32> time;
   std::snprintf(time.data(), time.size(), "%8.3f s", stage.seconds);
   clearBar();

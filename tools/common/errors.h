@@ -27,10 +27,10 @@ private:
   std::string remedy_;
 };
 
-template <ExitCode exit_code>
+template <ExitCode Code>
 struct ErrorOf : ToolError {
   ErrorOf(const std::string& cause, std::string remedy)
-      : ToolError(exit_code, cause, std::move(remedy)) {}
+      : ToolError(Code, cause, std::move(remedy)) {}
 };
 /// The work could not be done.
 using Failure = ErrorOf<ExitCode::Failed>;

@@ -124,7 +124,8 @@ Point parseOffset(const std::string& text) {
 void print(const OptionTable& options, Console& console) {
   for (const OptionInfo& option : options) {
     const Json value = option.value ? option.value() : Json();
-    if (!value.is_null() && value != false && value != "") {
+    const bool is_empty = value.is_string() && value.get_ref<const std::string&>().empty();
+    if (!value.is_null() && value != false && !is_empty) {
       console.entry(option.name, value == true             ? "yes"
                                  : value.is_string()       ? oneLine(value.get<std::string>())
                                  : value.is_number_float() ? formatted(value.get<double>(), 6)
