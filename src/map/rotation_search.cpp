@@ -248,7 +248,7 @@ Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
   const auto best =
       std::min_element(ends.begin(), ends.end(),
                        [](const auto& one, const auto& other) { return one.first < other.first; });
-  const Matrix3d rotation = distances(kFineSamples, threads).descend(best->second).second;
+  Matrix3d rotation = distances(kFineSamples, threads).descend(best->second).second;
   reportFraction(report, 1.0);
   return rotation;
 }

@@ -111,6 +111,7 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   // its weight goes back.
   const auto entry_of = [&](Index i) { return std::pair(weights[i], -i); };
   std::vector<std::pair<double, Index>> entries;
+  entries.reserve(weights.size());
   for (Index i = 0; i < weights.count(); ++i)
     entries.push_back(entry_of(i));
   std::priority_queue heap(std::less<>(), std::move(entries));

@@ -103,7 +103,9 @@ SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
     used += surface.inputs.size();
   }
   cloud->is_dense = used == input_size_;
-  return used > 0 ? cloud : detail::cloudOfNothing(0);
+  if (used == 0)
+    cloud = detail::cloudOfNothing(0);
+  return cloud;
 }
 
 template <typename PointInT>
