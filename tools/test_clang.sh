@@ -21,9 +21,10 @@ tidy() {
     sed '/ warnings* generated\.$/d'
 }
 
-# sanitized <program> <filter>: tests of a program, a part of them on each processor.
+# sanitized <program> <filter>: tests of a program, in parts that keep all processors busy.
 sanitized() {
-  seq 0 "$((jobs - 1))" | xargs -P "$jobs" -I '{}' env GTEST_TOTAL_SHARDS="$jobs" \
+  local parts="$((4 * jobs))"
+  seq 0 "$((parts - 1))" | xargs -P "$jobs" -I '{}' env GTEST_TOTAL_SHARDS="$parts" \
     GTEST_SHARD_INDEX='{}' "$1" --gtest_brief=1 "--gtest_filter=$2"
 }
 
