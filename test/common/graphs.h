@@ -4,8 +4,6 @@
 #include "helpers.h"
 #include "local_delaunay_graph.h"
 
-#include <set>
-
 /// Neighbour graphs for tests of the core's stages.
 namespace spherical_param::test {
 

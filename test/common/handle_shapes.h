@@ -2,10 +2,6 @@
 
 #include "helpers.h"
 
-#include <Eigen/Geometry>
-
-#include <limits>
-
 /// Clouds of surfaces with handles.
 namespace spherical_param::test {
 

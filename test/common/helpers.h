@@ -3,7 +3,7 @@
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <set>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>

@@ -2,8 +2,6 @@
 
 #include "helpers.h"
 
-#include <set>
-
 /// Clouds of surfaces with openings, and checks of their meshes.
 namespace spherical_param::test {
 

@@ -1,13 +1,10 @@
 #pragma once
 
-#include "helpers.h"
 #include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
-
-#include <string>
 
 /// Clouds, options and checks for tests of reconstruct().
 namespace spherical_param::test {

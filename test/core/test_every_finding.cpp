@@ -1,14 +1,9 @@
 #include "handle_shapes.h"
-#include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 /// Points of a grid, where a function is not negative.
@@ -20,7 +15,7 @@ Positions latticeWhere(int side, const Inside& inside) {
     if (inside(p))
       points.push_back(p);
   }
-  return test::positionsOf(points);
+  return positionsOf(points);
 }
 
 Positions elevationModel(int side) {
@@ -36,11 +31,10 @@ Positions contours(double ratio, int rings) {
   std::vector<Eigen::Vector3d> points;
   for (int ring = 0; ring < rings; ++ring)
     for (int i = 0; i < around; ++i) {
-      const double angle = 2.0 * test::kPi * (i + 0.5 * (ring % 2)) / around;
-      points.emplace_back(std::cos(angle), std::sin(angle),
-                          ratio * 2.0 * test::kPi / around * ring);
+      const double angle = 2.0 * kPi * (i + 0.5 * (ring % 2)) / around;
+      points.emplace_back(std::cos(angle), std::sin(angle), ratio * 2.0 * kPi / around * ring);
     }
-  return test::positionsOf(points);
+  return positionsOf(points);
 }
 
 const std::map<std::string, Positions>& clouds() {
@@ -48,29 +42,28 @@ const std::map<std::string, Positions>& clouds() {
     return (p - Eigen::Vector3d::Constant(5.0)).norm() <= 5.1;
   };
   static const std::map<std::string, Positions> all = {
-      {"whole", test::ellipsoid(800)},
-      {"two", test::twoSpheres(400, 300, 6.0)},
+      {"whole", ellipsoid(800)},
+      {"two", twoSpheres(400, 300, 6.0)},
       {"eight",
        [] {
          Positions cloud(3, 0);
          for (int i = 0; i < 8; ++i)
-           cloud = test::horizontally(cloud, test::spiralSphere(200).colwise() +
-                                                 Eigen::Vector3d(3.0 * i, 0.0, 0.0));
+           cloud = horizontally(cloud,
+                                spiralSphere(200).colwise() + Eigen::Vector3d(3.0 * i, 0.0, 0.0));
          return cloud;
        }()},
-      {"two too small", test::twoSpheres(30, 30, 6.0)},
-      {"bowl", test::hemisphere(800)},
-      {"holes", test::sphereWithHoles(1500, 3, 0.4)},
-      {"patch", test::flatPatch(15)},
-      {"torus", test::torusCloud(40, 16)},
-      {"double torus", test::doubleTorus(0.12)},
-      {"strays inside",
-       test::horizontally(test::spiralSphere(1500),
-                          0.9 * test::randomCube(60, 3) - Positions::Constant(3, 60, 0.45))},
-      {"strays outside", test::horizontally(test::spiralSphere(800), 1.6 * test::spiralSphere(5))},
-      {"noisy", test::noisySphere(1000, 0.5)},
-      {"very noisy", test::noisySphere(1500, 1.7)},
-      {"corners", test::cubeGrid(2)},
+      {"two too small", twoSpheres(30, 30, 6.0)},
+      {"bowl", hemisphere(800)},
+      {"holes", sphereWithHoles(1500, 3, 0.4)},
+      {"patch", flatPatch(15)},
+      {"torus", torusCloud(40, 16)},
+      {"double torus", doubleTorus(0.12)},
+      {"strays inside", horizontally(spiralSphere(1500),
+                                     0.9 * randomCube(60, 3) - Positions::Constant(3, 60, 0.45))},
+      {"strays outside", horizontally(spiralSphere(800), 1.6 * spiralSphere(5))},
+      {"noisy", noisySphere(1000, 0.5)},
+      {"very noisy", noisySphere(1500, 1.7)},
+      {"corners", cubeGrid(2)},
       {"elevations", elevationModel(10)},
       {"volume", latticeWhere(11, ball)},
       {"contours", contours(5.0, 12)},
@@ -120,7 +113,7 @@ void expectHelp(const std::string& name, const Options& start) {
 TEST(EveryFinding, OfEveryCloudHelpsOrDoesNoHarmAndNoneRepeatsAnOption) {
   for (const auto& [name, points] : clouds()) {
     expectHelp(name, Options());
-    expectHelp(name, test::sphere());
+    expectHelp(name, sphere());
   }
 }
 
@@ -129,7 +122,7 @@ TEST(EveryFinding, OfWhatAnOptionForbidsNamesThatOption) {
     expectHelp(name, options);
     return reconstruct(clouds().at(name), options).findings.at(0).option;
   };
-  for (Options options : {Options(), test::sphere()}) {
+  for (Options options : {Options(), sphere()}) {
     options.surface = SurfaceMode::Closed;
     EXPECT_EQ(named("bowl", options), "surface");
     options.parts = PartsMode::All;
@@ -157,4 +150,4 @@ TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

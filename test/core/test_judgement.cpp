@@ -3,23 +3,13 @@
 #include "handle_shapes.h"
 #include "paper_method.h"
 #include "reconstructions.h"
-#include "spherical_param/self_intersection.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
-using test::expectGuarantees;
-using test::mesh;
-using test::quick;
-using test::watched;
-
 TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
-  for (const Positions& points : {test::ellipsoid(500), test::cubeGrid(8)})
-    for (const Options& options : test::bothMethods()) {
+  for (const Positions& points : {ellipsoid(500), cubeGrid(8)})
+    for (const Options& options : bothMethods()) {
       const Surface result = mesh(points, options);
       expectGuarantees(points, result);
       EXPECT_TRUE(result.self_intersections.empty());
@@ -35,7 +25,7 @@ TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
 
 TEST(Judgement, CubeHasItsMeasuresAndItsCreases) {
   const Eigen::Vector3d shift(5.0, -3.0, 7.0);
-  Positions points = 2.0 * test::cubeGrid(9);
+  Positions points = 2.0 * cubeGrid(9);
   points.colwise() += shift;
   const MeshMeasures measures = mesh(points).measures;
   // Corners are cut if any crease is missing.
@@ -49,10 +39,10 @@ TEST(Judgement, CubeHasItsMeasuresAndItsCreases) {
 }
 
 TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
-  const Positions torus = test::torusCloud(40, 20, 1.0, 0.5);
-  const Positions bowl = test::spiralSphere(1500).rightCols(1100);  // without its top
-  const Positions parts = test::twoSpheres(200, 160, 6.0);
-  for (Options options : test::bothMethods()) {
+  const Positions torus = torusCloud(40, 20, 1.0, 0.5);
+  const Positions bowl = spiralSphere(1500).rightCols(1100);  // without its top
+  const Positions parts = twoSpheres(200, 160, 6.0);
+  for (Options options : bothMethods()) {
     options.handles = HandleMode::None;
     options.paper.k = 10;
     const Surface of_torus = mesh(torus, options);
@@ -66,7 +56,7 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
     EXPECT_GT(of_bowl.diagnosis.edges_outside_graph, 0.001);
     const Surface of_parts = mesh(parts, options);
     EXPECT_EQ(of_parts.diagnosis.kind, SurfaceKind::SeveralParts);
-    EXPECT_TRUE(test::isFound(of_parts, "2 separate parts (160 and 200 points)"));
+    EXPECT_TRUE(isFound(of_parts, "2 separate parts (160 and 200 points)"));
     ASSERT_EQ(of_parts.diagnosis.bridges.size(), 1U);
     EXPECT_EQ(of_parts.diagnosis.bridges[0].points, 160U);
     for (const Index v : of_parts.diagnosis.bridges[0].vertices)
@@ -77,13 +67,13 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
       const bool is_reported = shows_openings || points.cols() != bowl.cols();
       EXPECT_EQ(result.diagnosis.looksClosedGenus0(), !is_reported);
       EXPECT_TRUE(hasFault(result.findings));
-      EXPECT_TRUE(is_reported || test::isFound(result, "folded"));
+      EXPECT_TRUE(is_reported || isFound(result, "folded"));
     }
   }
 }
 
 TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
-  const Positions points = test::randomCube(6000, 1);
+  const Positions points = randomCube(6000, 1);
   const Surface result = mesh(points, quick());
   EXPECT_TRUE(result.intersections_are_sampled);
   EXPECT_FALSE(result.isUsable());
@@ -96,14 +86,13 @@ TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
 }
 
 TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
-  const Positions points = test::ellipsoid(600);
-  Options options = quick(test::paper());
+  const Positions points = ellipsoid(600);
+  Options options = quick(paper());
   options.paper.max_iterations = 3;
   options.paper.weights = EdgeWeights::InverseLength;
   const Surface result = mesh(points, watched(options));
   const Graph graph =
-      internal::paper::nearestNeighborGraph(points, test::bruteForceNeighbors(points, 25), 25)
-          .graph;
+      internal::paper::nearestNeighborGraph(points, bruteForceNeighbors(points, 25), 25).graph;
   const std::vector<double> expected =
       tangentialLaplacianLengths(graph, result.sphere, options.paper.weights);
   ASSERT_EQ(result.vertex_residuals.size(), expected.size());
@@ -121,7 +110,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     return static_cast<std::size_t>(std::count_if(
         marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
   };
-  const Positions rough = test::noisySphere(300, 1.0);
+  const Positions rough = noisySphere(300, 1.0);
   const Surface tangled = mesh(rough, watched(quick()));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
@@ -132,15 +121,15 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
                   triangle_mark::self_intersection,
               0);
-  const Surface parts = mesh(test::twoSpheres(200, 160, 5.0), watched(test::sphere()));
+  const Surface parts = mesh(twoSpheres(200, 160, 5.0), watched(sphere()));
   EXPECT_GT(count(parts, triangle_mark::part_bridge), 0U);
   EXPECT_EQ(count(parts, triangle_mark::handle), 0U);
-  EXPECT_EQ(count(mesh(test::ellipsoid(300), watched()), 0xff), 0U);
+  EXPECT_EQ(count(mesh(ellipsoid(300), watched()), 0xff), 0U);
 }
 
 TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
-  const Positions base = test::noisySphere(500, 0.15);
-  const Positions points = test::horizontally(base.leftCols(50), base);
+  const Positions base = noisySphere(500, 0.15);
+  const Positions points = horizontally(base.leftCols(50), base);
   const Surface rough = mesh(points);
   Options options;
   options.smoothing = 3;
@@ -152,12 +141,12 @@ TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
   EXPECT_EQ(result.triangles, rough.triangles);
   EXPECT_EQ(result.sphere, rough.sphere);
   EXPECT_EQ(result.measures.volume, rough.measures.volume);
-  const Positions vertices = test::verticesOf(points, result);
+  const Positions vertices = verticesOf(points, result);
   const Eigen::VectorXd moved = (result.smoothed - vertices).colwise().norm();
   EXPECT_GT(moved.minCoeff(), 0.0);
   EXPECT_NEAR(result.smoothing.max_displacement, moved.maxCoeff(), 1e-12);
   EXPECT_NEAR(result.smoothing.rms_displacement, std::sqrt(moved.squaredNorm() / 500.0), 1e-12);
-  const double volume = test::volumeOf(result.smoothed, result.triangles);
+  const double volume = volumeOf(result.smoothed, result.triangles);
   EXPECT_NEAR(result.smoothing.volume_before, result.measures.volume, 1e-12);
   EXPECT_NEAR(result.smoothing.volume_after, volume, 1e-12);
   EXPECT_NEAR(volume, result.measures.volume, 1e-3 * result.measures.volume);
@@ -168,22 +157,22 @@ TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
 }
 
 TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
-  const Positions points = test::noisySphere(400, 0.6);
+  const Positions points = noisySphere(400, 0.6);
   const Surface rough = mesh(points);
   expectGuarantees(points, rough);
   EXPECT_TRUE(rough.is_noisy);
-  EXPECT_TRUE(test::isFound(rough, "nois"));
+  EXPECT_TRUE(isFound(rough, "nois"));
   Options options;
   options.smoothing = 5;
   const Surface result = mesh(points, options);
   expectGuarantees(points, result);
-  EXPECT_FALSE(test::isFound(result, "nois"));
+  EXPECT_FALSE(isFound(result, "nois"));
   EXPECT_EQ(result.intersecting_triangles, 0U);     // on the smoothed points
   EXPECT_FALSE(result.self_intersections.empty());  // on the points themselves
   EXPECT_EQ(result.smoothing.self_intersections, 0U);
   EXPECT_TRUE(findSelfIntersections(result.smoothed, result.triangles).empty());
-  EXPECT_NEAR(result.smoothing.volume_after, 4.0 / 3.0 * test::kPi, 0.3);
+  EXPECT_NEAR(result.smoothing.volume_after, 4.0 / 3.0 * kPi, 0.3);
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

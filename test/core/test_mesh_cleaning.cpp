@@ -1,21 +1,13 @@
 #include "mesh_cleaning.h"
 
-#include "open_shapes.h"
 #include "reconstructions.h"
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
-using test::surfaceOf;
-
 TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
-  Positions points = test::spiralSphere(600);
+  Positions points = spiralSphere(600);
   const Triangles triangles = triangulateSphere(points);
   points.col(200) *= -1.5;
   internal::MeshedCloud mesh;
@@ -46,7 +38,7 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
 
 TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
   // Random points of a thin plate: false edges join its two sides, and the sphere is a tangle.
-  Positions points = test::randomSphere(300, 2);
+  Positions points = randomSphere(300, 2);
   points.row(2) *= 0.1;
   const Result scan = reconstruct(points);
   const Surface& surface = scan.surface();
@@ -57,13 +49,13 @@ TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
   EXPECT_EQ(surface.inputs.size() + unmeshed.size() + scan.left_out.outliers.size(), 300U);
   for (const Index i : unmeshed)
     EXPECT_EQ(surface.vertexOf(i), -1);
-  const Surface sphere = surfaceOf(points, test::sphere());
-  EXPECT_TRUE(test::isSphereOverAll(sphere.triangles, 300));
+  const Surface sphere = surfaceOf(points, sphere());
+  EXPECT_TRUE(isSphereOverAll(sphere.triangles, 300));
   EXPECT_GT(sphere.intersecting_triangles, 0U);
 }
 
 TEST(MeshCleaning, OfATangleTheTrianglesThatAreCertainStay) {
-  const Positions points = test::terraces();
+  const Positions points = terraces();
   const Result scan = reconstruct(points);
   const Surface& surface = scan.surface();
   EXPECT_TRUE(surface.has_certain_triangles_only);
@@ -77,18 +69,18 @@ TEST(MeshCleaning, OfATangleTheTrianglesThatAreCertainStay) {
   for (const Opening& opening : surface.openings)
     EXPECT_EQ(opening.is_filled, !opening.triangles.empty());
   EXPECT_NE(scan.verdict.find("has only the triangles that are certain"), std::string::npos);
-  EXPECT_FALSE(surfaceOf(points, test::sphere()).has_certain_triangles_only);
+  EXPECT_FALSE(surfaceOf(points, sphere()).has_certain_triangles_only);
 }
 
 TEST(MeshCleaning, ATangleAmongOtherPartsIsLeftOut) {
   // A line with three bends, in one plane.
   Positions bent(3, 200);
   for (Index i = 0; i < 200; ++i) {
-    const double angle = 2.0 * test::kPi * i / 200;
+    const double angle = 2.0 * kPi * i / 200;
     const double radius = 0.32 + 0.048 * std::cos(3.0 * angle);
     bent.col(i) << 2.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0;
   }
-  const Result scan = reconstruct(test::horizontally(0.3 * test::spiralSphere(600), bent));
+  const Result scan = reconstruct(horizontally(0.3 * spiralSphere(600), bent));
   EXPECT_EQ(scan.surfaces.size(), 1U);
   EXPECT_EQ(scan.left_out.other_parts.size(), 200U);
   ASSERT_EQ(scan.failures.size(), 1U);
@@ -99,4 +91,4 @@ TEST(MeshCleaning, ATangleAmongOtherPartsIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,17 +3,13 @@
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 
-#include <gtest/gtest.h>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
-using test::canonical;
-
 /// The topology must be sound.
-Surface meshOf(const Positions& points, const Options& options = test::sphere()) {
-  const Surface result = test::mesh(points, options);
-  EXPECT_TRUE(test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
+Surface meshOf(const Positions& points, const Options& options = sphere()) {
+  const Surface result = mesh(points, options);
+  EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
   return result;
 }
 
@@ -21,18 +17,18 @@ Surface meshOf(const Positions& points, const Options& options = test::sphere())
 /// there, on the sphere, rings of points: `turn` apart, each with its radius.
 Positions sphereWith(const std::vector<double>& radii, int ring, double turn, double gap) {
   std::vector<Eigen::Vector3d> points;
-  const Positions sphere = test::spiralSphere(150);
+  const Positions sphere = spiralSphere(150);
   for (const Eigen::Vector3d point : sphere.colwise())
     if ((point - Eigen::Vector3d::UnitZ()).norm() > gap)
       points.emplace_back(point - Eigen::Vector3d::UnitZ());
   for (std::size_t i = 0; i < radii.size(); ++i)
     for (int k = 0; k < ring; ++k) {
       const double r = radii[i];
-      const double angle = turn * static_cast<double>(i) + 2.0 * test::kPi * k / ring;
+      const double angle = turn * static_cast<double>(i) + 2.0 * kPi * k / ring;
       points.emplace_back(r * std::cos(angle), r * std::sin(angle),
                           -r * r / (1.0 + std::sqrt(1.0 - r * r)));
     }
-  return test::positionsOf(points);
+  return positionsOf(points);
 }
 
 Positions sphereWithDisc(double radius, int count = 30) {
@@ -47,7 +43,7 @@ Positions sphereWithRings(double least) {
   std::vector<double> radii;
   for (double r = 0.15; r > least; r *= 0.45)
     radii.push_back(r);
-  return test::horizontally(sphereWith(radii, 7, test::kPi / 7.0, 0.25), Eigen::Vector3d::Zero());
+  return horizontally(sphereWith(radii, 7, kPi / 7.0, 0.25), Eigen::Vector3d::Zero());
 }
 
 TEST(Numbers, PointsOfEqualCoordinatesAreDuplicates) {
@@ -73,7 +69,7 @@ TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
 
 TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
   for (const double radius : {1e-5, 1e-20}) {
-    const Surface result = meshOf(sphereWithDisc(radius, 100), test::quick(test::sphere()));
+    const Surface result = meshOf(sphereWithDisc(radius, 100), quick(sphere()));
     EXPECT_EQ(result.duplicates(), 0U) << radius;
     EXPECT_FALSE(result.self_intersections.empty()) << radius;
     EXPECT_FALSE(result.findings.empty()) << radius;
@@ -87,18 +83,18 @@ TEST(Numbers, WhereDensityGrowsStepByStepTheMeshIsTrueDownTo1em5) {
 
 TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {
   // 30 bits for each coordinate: they are all there at 2^-1040.
-  const Positions points = (test::spiralSphere(60) * 0x1p30).array().round() * 0x1p-30;
+  const Positions points = (spiralSphere(60) * 0x1p30).array().round() * 0x1p-30;
   const Surface expected = meshOf(points);
   for (const int power : {332, 100, -100, -1000, -1040}) {
     const Positions scaled = points.unaryExpr([&](double x) { return std::ldexp(x, power); });
-    const Surface result = test::surfaceOf(scaled, {}, test::bruteForceFactory(points));
+    const Surface result = surfaceOf(scaled, {}, bruteForceFactory(points));
     EXPECT_EQ(canonical(result.triangles), canonical(expected.triangles)) << power;
   }
   EXPECT_THROW(meshOf(points * 1.1e100), InvalidInput);
 }
 
 TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
-  const test::Mesh tube = test::bentTube(90.0, 0.0, 8);
+  const Mesh tube = bentTube(90.0, 0.0, 8);
   const Surface result = meshOf(tube.points);
   EXPECT_EQ(canonical(result.triangles), canonical(tube.triangles));
   // Its ends are some units in the last place of 1 wide, as exp(-45 / sqrt(2)) = 1.5e-14 has it.
@@ -111,13 +107,13 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
 }
 
 TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
-  const test::Mesh tube = test::bentTube(130.0, 0.0, 8);
-  Options options = test::sphere();
-  EXPECT_FALSE(meshOf(tube.points, test::quick(options)).findings.empty());
+  const Mesh tube = bentTube(130.0, 0.0, 8);
+  Options options = sphere();
+  EXPECT_FALSE(meshOf(tube.points, quick(options)).findings.empty());
   // Cut into several spheres it is not.
   options.handles = HandleMode::Auto;
   EXPECT_EQ(canonical(meshOf(tube.points, options).triangles), canonical(tube.triangles));
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,15 +1,11 @@
 #include "open_surface.h"
 
 #include "handle_shapes.h"
-#include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/self_intersection.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::sphereWithHoles;
 
 Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
   Options options;
@@ -18,25 +14,25 @@ Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
 }
 
 TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
-  test::expectSound(test::surfaceOf(test::hemisphere(700), leftOpen()), 0, 1);
-  test::expectSound(test::surfaceOf(test::tube(20, 40), leftOpen()), 0, 2);
+  test::expectSound(surfaceOf(hemisphere(700), leftOpen()), 0, 1);
+  test::expectSound(surfaceOf(tube(20, 40), leftOpen()), 0, 2);
   for (const Index holes : {1, 2, 20})
-    test::expectSound(test::surfaceOf(sphereWithHoles(4000, holes, 0.2), leftOpen()), 0,
+    test::expectSound(surfaceOf(sphereWithHoles(4000, holes, 0.2), leftOpen()), 0,
                       static_cast<std::size_t>(holes));
   // An opening of more than half of the sphere.
-  const Positions bowl = test::pointsWhere(test::spiralSphere(3000),
-                                           [](const Eigen::Vector3d& p) { return p.z() < -0.4; });
-  test::expectSound(test::surfaceOf(bowl, leftOpen()), 0, 1);
-  test::expectSound(test::surfaceOf(test::spiralSphere(600), leftOpen()), 0, 0);
+  const Positions bowl =
+      pointsWhere(spiralSphere(3000), [](const Eigen::Vector3d& p) { return p.z() < -0.4; });
+  test::expectSound(surfaceOf(bowl, leftOpen()), 0, 1);
+  test::expectSound(surfaceOf(spiralSphere(600), leftOpen()), 0, 0);
 }
 
 TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
   // Ragged rims, near which some points have no triangle at first.
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Positions wave = test::randomCube(1500, seed);
+    Positions wave = randomCube(1500, seed);
     wave.row(2) = 0.2 * (5.0 * wave.row(0)).array().sin();
-    const Surface result = test::surfaceOf(
-        test::pointsWhere(wave, [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.4; }),
+    const Surface result = surfaceOf(
+        pointsWhere(wave, [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.4; }),
         leftOpen());
     EXPECT_GE(result.boundary.size(), 2U) << seed;
     test::expectSound(result, 0, result.boundary.size());
@@ -46,12 +42,11 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
 TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
   // Noise of half the points' distance: the optimisation smooths the positions. It finishes on the
   // given ones unless they are smoothed after it.
-  const Positions points =
-      test::withNoise(test::hemisphere(1500), 0.5 * std::sqrt(2.0 * test::kPi / 1500), 3);
+  const Positions points = withNoise(hemisphere(1500), 0.5 * std::sqrt(2.0 * kPi / 1500), 3);
   for (const int smoothing : {0, 3}) {
     Options options = leftOpen();
     options.smoothing = smoothing;
-    const Surface result = test::surfaceOf(points, options);
+    const Surface result = surfaceOf(points, options);
     EXPECT_FALSE(result.isClosed());
     EXPECT_TRUE(result.is_noisy);
     EXPECT_TRUE(smoothing == 0 || !result.self_intersections.empty());
@@ -66,12 +61,12 @@ TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
   for (const double radius : {0.27, 0.29, 0.31}) {
     const Eigen::Vector3d a(0.0, 0.0, 1.0);
     const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
-    const Surface result = test::surfaceOf(
-        test::pointsWhere(test::spiralSphere(3000),
-                          [&](const Eigen::Vector3d& p) {
-                            return std::min((p - a).norm(), (p - b).norm()) > radius;
-                          }),
-        leftOpen());
+    const Surface result =
+        surfaceOf(pointsWhere(spiralSphere(3000),
+                              [&](const Eigen::Vector3d& p) {
+                                return std::min((p - a).norm(), (p - b).norm()) > radius;
+                              }),
+                  leftOpen());
     test::expectSound(result, 0, result.boundary.size());
     EXPECT_GE(result.boundary.size(), 1U);
     EXPECT_LE(result.boundary.size(), 2U);
@@ -79,12 +74,12 @@ TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
 }
 
 TEST(OpenSurface, OfAFlatPatchIsThePatch) {
-  const Positions patch = test::pointsWhere(test::flatPatch(40), [](const Eigen::Vector3d& p) {
+  const Positions patch = pointsWhere(flatPatch(40), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
   });
-  EXPECT_THROW(reconstruct(patch, test::sphere()), InvalidInput);
+  EXPECT_THROW(reconstruct(patch, sphere()), InvalidInput);
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
-    const Surface result = test::surfaceOf(patch, leftOpen(mode));
+    const Surface result = surfaceOf(patch, leftOpen(mode));
     test::expectSound(result, 0, 2);
     double rim = 0.0;  // twice the area that the boundary encloses
     for (const auto& loop : result.boundary)
@@ -101,7 +96,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
     Positions narrow(3, 9 * rows);
     for (int i = 0; i < 9 * rows; ++i)
       narrow.col(i) << i / rows + 0.01 * (i * i % 7), i % rows + 0.01 * (i * i % 5), 0.0;
-    test::expectSound(test::surfaceOf(narrow, leftOpen()), 0, 1);
+    test::expectSound(surfaceOf(narrow, leftOpen()), 0, 1);
   }
   // Of a line there is no surface.
   Positions line = Positions::Zero(3, 50);
@@ -111,10 +106,10 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
   const Positions points = sphereWithHoles(3000, 2, 0.4);
-  Options options = test::sphere();
+  Options options = sphere();
   options.details = true;
-  const Surface closed = test::surfaceOf(points, options);
-  const Surface open = test::surfaceOf(points, leftOpen());
+  const Surface closed = surfaceOf(points, options);
+  const Surface open = surfaceOf(points, leftOpen());
   // In a closed mesh, openings have the same room on the sphere.
   EXPECT_EQ(closed.sphere, open.sphere);
   EXPECT_TRUE(closed.isClosed());
@@ -147,44 +142,41 @@ TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
 }
 
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
-  const Surface small =
-      test::surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
+  const Surface small = surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
   test::expectSound(small, 0, 0);
   ASSERT_EQ(small.openings.size(), 1U);
   EXPECT_TRUE(small.openings[0].is_filled);
-  test::expectSound(test::surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 0,
-                    1);
+  test::expectSound(surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 0, 1);
   // A tube without ends may be one with flat ends.
-  const Surface tube = test::surfaceOf(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
+  const Surface tube = surfaceOf(tube(20, 40), leftOpen(SurfaceMode::Auto));
   test::expectSound(tube, 0, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }
 
 TEST(OpenSurface, HolesAreFilledUpToASize) {
   Positions points = sphereWithHoles(4000, 2, 0.2);
-  points = test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
-  const Surface open = test::surfaceOf(points, leftOpen());
+  points = pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
+  const Surface open = surfaceOf(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];
   Options by_edges = leftOpen();
   by_edges.fill_holes = static_cast<int>(second.loop.size());
-  test::expectSound(test::surfaceOf(points, by_edges), 0, 1);
+  test::expectSound(surfaceOf(points, by_edges), 0, 1);
   Options by_area = leftOpen();
   by_area.fill_holes_area = 1.01 * second.area;
-  test::expectSound(test::surfaceOf(points, by_area), 0, 1);
+  test::expectSound(surfaceOf(points, by_area), 0, 1);
   by_area.fill_holes_area = 10.0;
-  test::expectSound(test::surfaceOf(points, by_area), 0, 0);
+  test::expectSound(surfaceOf(points, by_area), 0, 0);
 }
 
 TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
-  const Positions holed =
-      test::pointsWhere(test::torusCloud(80, 30, 2.5, 1.0), [](const Eigen::Vector3d& p) {
-        return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
-      });
+  const Positions holed = pointsWhere(torusCloud(80, 30, 2.5, 1.0), [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
+  });
   Options options = leftOpen();
   options.handles = HandleMode::None;
-  for (const Positions& points : {holed, test::moebiusBand(160, 12)}) {
-    const Surface result = test::surfaceOf(points, options);
+  for (const Positions& points : {holed, moebiusBand(160, 12)}) {
+    const Surface result = surfaceOf(points, options);
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);
@@ -193,4 +185,4 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

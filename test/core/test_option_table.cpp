@@ -3,12 +3,7 @@
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <ostream>
-#include <set>
-#include <string>
 
 namespace spherical_param {
 

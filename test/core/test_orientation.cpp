@@ -1,22 +1,20 @@
 #include "open_shapes.h"
 #include "reconstructions.h"
 
-#include <gtest/gtest.h>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 Surface facing(const Positions& points, const CloudInfo& info) {
   Surface surface = reconstruct(points, {}, {}, info).surface();
   // The map has the side of the mesh.
-  EXPECT_GT(test::volumeOf(surface.sphere, surface.triangles), 0.0);
+  EXPECT_GT(volumeOf(surface.sphere, surface.triangles), 0.0);
   return surface;
 }
 
 /// The sum of the areas of triangles, along z.
 double areaUp(const Positions& points, const Surface& surface) {
   double sum = 0.0;
-  const Positions vertices = test::verticesOf(points, surface);
+  const Positions vertices = verticesOf(points, surface);
   for (const auto& t : surface.triangles.colwise()) {
     const Eigen::Vector3d a = vertices.col(t[0]);
     sum += (vertices.col(t[1]) - a).cross(vertices.col(t[2]) - a).z();
@@ -25,7 +23,7 @@ double areaUp(const Positions& points, const Surface& surface) {
 }
 
 TEST(Orientation, OfAClosedMeshIsOutwardOrThatOfTheNormals) {
-  const Positions points = test::ellipsoid(400);
+  const Positions points = ellipsoid(400);
   EXPECT_EQ(facing(points, {}).faced_by, FacedBy::Outward);
   EXPECT_EQ(facing(points, {{}, Eigen::Vector3d::Zero(), {}}).faced_by, FacedBy::Outward);
   const Surface inward = facing(points, {-points, std::nullopt, {}});
@@ -45,7 +43,7 @@ TEST(Orientation, OfAClosedMeshIsOutwardOrThatOfTheNormals) {
 }
 
 TEST(Orientation, OfTerrainIsUpUnlessTheSensorSawItFromBelow) {
-  Positions points = test::flatPatch(20);
+  Positions points = flatPatch(20);
   points.row(2) = 0.3 * points.row(0).array().sin();
   const Eigen::Vector3d center = points.rowwise().mean();
   const auto expect = [&](const CloudInfo& given, FacedBy by, double up) {
@@ -67,7 +65,7 @@ TEST(Orientation, OfTerrainIsUpUnlessTheSensorSawItFromBelow) {
 }
 
 TEST(Orientation, OfABowlIsOutwardUnlessTheSensorLooksIntoIt) {
-  const Positions points = test::hemisphere(600);
+  const Positions points = hemisphere(600);
   const Surface outward = facing(points, {});
   EXPECT_EQ(outward.faced_by, FacedBy::Outward);
   const Eigen::Vector3d mouth = outward.openings[0].center;
@@ -77,7 +75,7 @@ TEST(Orientation, OfABowlIsOutwardUnlessTheSensorLooksIntoIt) {
 }
 
 TEST(Orientation, TheOriginIsAViewpointWithRowsOrApartFromThePoints) {
-  Positions points = test::spiralSphere(50);
+  Positions points = spiralSphere(50);
   points(0, 7) = std::nan("");
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   EXPECT_EQ(viewpointOf(points, origin, false), std::nullopt);
@@ -89,4 +87,4 @@ TEST(Orientation, TheOriginIsAViewpointWithRowsOrApartFromThePoints) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,32 +3,11 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
-#include <gtest/gtest.h>
-
 #include <iterator>
-#include <limits>
-#include <set>
 #include <stdexcept>
-#include <string>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::bothMethods;
-using test::bruteForceNeighbors;
-using test::bruteForceSearch;
-using test::ellipsoid;
-using test::expectGuarantees;
-using test::horizontally;
-using test::isSphereOverAll;
-using test::mesh;
-using test::noisySphere;
-using test::paper;
-using test::quick;
-using test::randomSphere;
-using test::spiralSphere;
-using test::surfaceOf;
-using test::watched;
 
 TEST(Reconstruct, EllipsoidIsMeshedTrulyByBothMethods) {
   const Positions points = ellipsoid(800);
@@ -41,15 +20,14 @@ TEST(Reconstruct, EllipsoidIsMeshedTrulyByBothMethods) {
     const Surface result = mesh(points, options);
     expectGuarantees(points, result);
     // An inscribed polyhedron of 800 points: volume of the ellipsoid less about 1 %.
-    EXPECT_NEAR(result.measures.volume, 4.0 / 3.0 * test::kPi * 0.35, 0.03);
+    EXPECT_NEAR(result.measures.volume, 4.0 / 3.0 * kPi * 0.35, 0.03);
     EXPECT_LT(result.diagnosis.edges_outside_graph, 1e-9);
     EXPECT_EQ(result.embedding.levels.empty(), options.method == Method::Paper);
   }
 }
 
 std::vector<Positions> nastySets() {
-  std::vector<Positions> sets{test::cubeGrid(6), spiralSphere(200) * 1e-300,
-                              spiralSphere(200) * 1e100};
+  std::vector<Positions> sets{cubeGrid(6), spiralSphere(200) * 1e-300, spiralSphere(200) * 1e100};
   Positions circle = spiralSphere(100);
   circle.row(2).setZero();
   circle.colwise().normalize();
@@ -58,7 +36,7 @@ std::vector<Positions> nastySets() {
   line.row(0).setLinSpaced(0.0, 99.0);
   sets.push_back(horizontally(line, Eigen::Matrix<double, 3, 2>{{5, 7}, {1, 0}, {0, 1}}));
   sets.push_back(horizontally(spiralSphere(200), Eigen::Vector3d(1e9, 0.0, 0.0)));
-  sets.push_back(test::twoSpheres(150, 150, 1e6));
+  sets.push_back(twoSpheres(150, 150, 1e6));
   sets.push_back(horizontally(spiralSphere(150), randomSphere(150, 1) * 1e-12));
   Positions utm = spiralSphere(200);
   utm.colwise() += Eigen::Vector3d(5e7, -3e7, 1e7);
@@ -76,7 +54,7 @@ std::vector<Positions> nastySets() {
   sets.push_back(randomSphere(4, 1).replicate(1, 1000));
   for (Index n = 4; n <= 10; ++n)
     for (std::uint64_t seed = 0; seed < 3; ++seed)
-      sets.push_back(test::randomCube(n, seed));
+      sets.push_back(randomCube(n, seed));
   return sets;
 }
 
@@ -106,7 +84,7 @@ TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReported) {
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_FALSE(result.embedding.fallback_start);
-  EXPECT_TRUE(test::isFound(result, "collapsed"));
+  EXPECT_TRUE(isFound(result, "collapsed"));
 }
 
 TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
@@ -123,7 +101,7 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
       const Surface result = mesh(points, watched(options));
       expectGuarantees(points, result);
       EXPECT_GT(result.measures.volume, 1.0);
-      EXPECT_GT(test::volumeOf(result.sphere, result.triangles), 3.5);
+      EXPECT_GT(volumeOf(result.sphere, result.triangles), 3.5);
       const EmbeddingHistory& history = result.history;
       const std::set<Index> vertices(history.vertices.begin(), history.vertices.end());
       ASSERT_EQ(vertices.size(), history.vertices.size());
@@ -137,9 +115,9 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
 
 /// An ellipsoid with noise, shuffled, with some of its points twice.
 Positions shuffledWithRepetitions(Index n) {
-  Positions points = test::withNoise(ellipsoid(n), 0.004, 10);
+  Positions points = withNoise(ellipsoid(n), 0.004, 10);
   points = horizontally(points, points.leftCols(n / 10));
-  return points(Eigen::all, test::shuffledRange(points.cols(), 7));
+  return points(Eigen::all, shuffledRange(points.cols(), 7));
 }
 
 TEST(Reconstruct, AskingForDetailsChangesNoBit) {
@@ -234,7 +212,7 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
     EXPECT_TRUE(result.is_out_of_time);
     // That would take longer than the limit leaves.
     EXPECT_FALSE(result.diagnosis.genus.has_value());
-    EXPECT_TRUE(test::isFound(result, "time limit"));
+    EXPECT_TRUE(isFound(result, "time limit"));
     options.time_limit = 1e9;
     const Surface unhurried = surfaceOf(points, options);
     EXPECT_FALSE(unhurried.is_out_of_time);
@@ -244,4 +222,4 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,13 +3,10 @@
 #include "reconstructions.h"
 #include "result_units.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
-#include <string>
 #include <type_traits>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 /// Becomes any struct or class.
@@ -182,18 +179,18 @@ void expectScaled(const Surface& result, const Surface& scaled, double scale) {
 
 TEST(ResultFields, ResultOfAScaledCloudIsTheScaledResult) {
   // Open at one end, so that there is an opening to measure.
-  const Positions points = test::withNoise(test::spiralSphere(500), 0.003, 8).rightCols(400);
+  const Positions points = withNoise(spiralSphere(500), 0.003, 8).rightCols(400);
   Options options;
   options.smoothing = 2;
-  const Surface result = test::mesh(points, options);
+  const Surface result = mesh(points, options);
   ASSERT_EQ(result.openings.size(), 1U);
   for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {
     SCOPED_TRACE(scale);
-    const Surface scaled = test::mesh(scale * points, options);
+    const Surface scaled = mesh(scale * points, options);
     expectScaled(result, scaled, scale);
     EXPECT_EQ(scaled.verdict, result.verdict);
     // Other factors round the coordinates, but no decision is so close.
-    EXPECT_EQ(test::canonical(scaled.triangles), test::canonical(result.triangles));
+    EXPECT_EQ(canonical(scaled.triangles), canonical(result.triangles));
     if (scale == 4.0 || scale < 1.0) {
       EXPECT_EQ(scaled.triangles, result.triangles);
       EXPECT_EQ(scaled.sphere, result.sphere);
@@ -202,4 +199,4 @@ TEST(ResultFields, ResultOfAScaledCloudIsTheScaledResult) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   // Input 4 repeats input 1, whose node is in no triangle.
-  Positions points = test::positionsOf(
-      {{0, 0, 0}, {0.4, 0.3, 0.2}, {1, 0, 0}, {0, 1, 0}, {0.4, 0.3, 0.2}, {0, 0, 1}});
+  Positions points =
+      positionsOf({{0, 0, 0}, {0.4, 0.3, 0.2}, {1, 0, 0}, {0, 1, 0}, {0.4, 0.3, 0.2}, {0, 0, 1}});
   internal::OrderedPoints nodes = internal::orderPoints(points, 1);
   const auto node_of = internal::nodesOfInput(nodes);
   Surface surface;
@@ -43,4 +43,4 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,21 +1,13 @@
 #include "selection.h"
 
 #include "handle_shapes.h"
-#include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <limits>
-#include <string>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::horizontally;
-using test::surfaceOf;
 
 Positions movedTo(double x, const Positions& points) {
   return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
@@ -24,13 +16,12 @@ Positions movedTo(double x, const Positions& points) {
 /// Two noisy spheres, points of no surface, repeated points and points that are not finite.
 Positions mixedCloud() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Positions points =
-      horizontally(test::withNoise(test::randomSphere(300, 1), 0.01, 2),
-                   movedTo(4.0, test::withNoise(test::randomSphere(150, 3), 0.01, 4)));
-  points = horizontally(points, 2.0 * test::spiralSphere(6));
+  Positions points = horizontally(withNoise(randomSphere(300, 1), 0.01, 2),
+                                  movedTo(4.0, withNoise(randomSphere(150, 3), 0.01, 4)));
+  points = horizontally(points, 2.0 * spiralSphere(6));
   points = horizontally(points, points.middleCols(280, 176));
   points = horizontally(points, Positions::Constant(3, 2, nan));
-  return points(Eigen::all, test::shuffledRange(points.cols(), 7));
+  return points(Eigen::all, shuffledRange(points.cols(), 7));
 }
 
 /// Every point is in one list, and each list is ascending.
@@ -70,8 +61,8 @@ void expectAlone(const Positions& points, const Surface& surface, Options option
 }
 
 TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
-  Positions points = horizontally(test::ellipsoid(500), movedTo(3.0, test::hemisphere(400)));
-  points = horizontally(points, movedTo(6.0, test::torusCloud(40, 16)));
+  Positions points = horizontally(ellipsoid(500), movedTo(3.0, hemisphere(400)));
+  points = horizontally(points, movedTo(6.0, torusCloud(40, 16)));
   points = horizontally(points, Eigen::Vector3d(0.0, 9.0, 0.0));
   Options options;
   const Result scan = reconstruct(points, options);
@@ -82,18 +73,17 @@ TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
   options.parts = PartsMode::Largest;
   EXPECT_EQ(reconstruct(points, options).verdict,
             "A sound mesh with 1 handle; 1 stray point, 900 points in other parts left out.");
-  const Surface sphere = surfaceOf(points, test::quick(test::sphere()));
-  EXPECT_TRUE(test::isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
-  EXPECT_EQ(withTopology(test::paper()).parts, PartsMode::All);
+  const Surface sphere = surfaceOf(points, quick(sphere()));
+  EXPECT_TRUE(isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
+  EXPECT_EQ(withTopology(paper()).parts, PartsMode::All);
 }
 
 TEST(Topology, OfWholeObjectsIsASphereInBothWays) {
-  for (const Positions& points :
-       {test::ellipsoid(600), test::noisySphere(800, 0.2), test::randomSphere(700, 5),
-        test::bentTube(6.0, 1.0, 12).points, test::twoSpheres(30, 30, 0.5)}) {
+  for (const Positions& points : {ellipsoid(600), noisySphere(800, 0.2), randomSphere(700, 5),
+                                  bentTube(6.0, 1.0, 12).points, twoSpheres(30, 30, 0.5)}) {
     const Result scan = reconstruct(points);
     EXPECT_TRUE(scan.left_out.text().empty());
-    const Triangles sphere = surfaceOf(points, test::sphere()).triangles;
+    const Triangles sphere = surfaceOf(points, sphere()).triangles;
     EXPECT_EQ(scan.surface().triangles, sphere);
     Options open;
     open.surface = SurfaceMode::Open;
@@ -102,9 +92,9 @@ TEST(Topology, OfWholeObjectsIsASphereInBothWays) {
 }
 
 TEST(Topology, PointsThatSampleWhatIsOpenAreNoStrayPoints) {
-  const Positions object = test::pointsWhere(test::spiralSphere(3000),
-                                             [](const Eigen::Vector3d& p) { return p.z() > -0.6; });
-  Positions few = 0.4 * test::spiralSphere(5);
+  const Positions object =
+      pointsWhere(spiralSphere(3000), [](const Eigen::Vector3d& p) { return p.z() > -0.6; });
+  Positions few = 0.4 * spiralSphere(5);
   few.row(2).setConstant(-0.6);
   EXPECT_TRUE(reconstruct(horizontally(object, few)).left_out.text().empty());
   few(2, 0) = 0.0;
@@ -119,7 +109,7 @@ TEST(Selection, EverySurfaceIsThatOfItsPointsAlone) {
       for (const ConsolidationMode consolidation :
            {ConsolidationMode::None, ConsolidationMode::Auto})
         for (const int threads : {1, 3}) {
-          Options options = test::quick();
+          Options options = quick();
           options.parts = parts;
           options.outliers = outliers;
           options.consolidation = consolidation;
@@ -151,7 +141,7 @@ TEST(Selection, APartThatCannotBeMeshedIsLeftOutUnlessNoneCanBe) {
   Options options;
   options.parts = PartsMode::Each;
   options.surface = SurfaceMode::Closed;
-  const Result result = reconstruct(horizontally(square(9.0), test::spiralSphere(80)), options);
+  const Result result = reconstruct(horizontally(square(9.0), spiralSphere(80)), options);
   ASSERT_EQ(result.surfaces.size(), 1U);
   EXPECT_EQ(result.surface().inputs.front(), 100);
   EXPECT_EQ(result.left_out.other_parts.size(), 100U);
@@ -163,8 +153,8 @@ TEST(Selection, APartThatCannotBeMeshedIsLeftOutUnlessNoneCanBe) {
 TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
   const Positions points = mixedCloud();
   for (const bool takes_apart : {false, true})
-    for (Options options : test::bothMethods()) {
-      options = test::quick(options);
+    for (Options options : bothMethods()) {
+      options = quick(options);
       options.paper.max_iterations = 50;
       options.parts = takes_apart ? PartsMode::Each : PartsMode::All;
       options.outliers = takes_apart ? OutlierMode::Auto : OutlierMode::None;
@@ -176,7 +166,7 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
         for (const Index i : some)
           for (Index j = 0; j < i; ++j)
             EXPECT_NE(points.col(j), points.col(i));
-        return [&, some, search = test::bruteForceFactory(points)(some)](
+        return [&, some, search = bruteForceFactory(points)(some)](
                    const std::vector<Index>& queries, int count) {
           for (const Index query : queries)
             EXPECT_TRUE(std::binary_search(some.begin(), some.end(), query));
@@ -196,7 +186,7 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
 TEST(Selection, PartsShareOneTimeLimit) {
   Positions points(3, 0);
   for (int part = 0; part < 8; ++part)
-    points = horizontally(points, movedTo(4.0 * part, test::noisySphere(100, 0.5)));
+    points = horizontally(points, movedTo(4.0 * part, noisySphere(100, 0.5)));
   Options options;
   options.parts = PartsMode::Each;
   for (const auto& [limit, expected] : {std::pair(0.0, 8), std::pair(1e9, 0)}) {
@@ -225,4 +215,4 @@ TEST(Selection, PartsShareOneTimeLimit) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

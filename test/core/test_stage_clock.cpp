@@ -5,12 +5,9 @@
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <string>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -89,10 +86,10 @@ TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
 }
 
 TEST(StageClock, StagesComeInOrderAndEachCanBeCancelled) {
-  const Positions sphere = test::spiralSphere(200);
-  const Positions points = test::horizontally(
-      test::horizontally(sphere, sphere.colwise() + Eigen::Vector3d(4.0, 0.0, 0.0)),
-      2.0 * test::spiralSphere(4));
+  const Positions sphere = spiralSphere(200);
+  const Positions points =
+      horizontally(horizontally(sphere, sphere.colwise() + Eigen::Vector3d(4.0, 0.0, 0.0)),
+                   2.0 * spiralSphere(4));
   const Names of_part{"openings",     "embedding", "triangulation",
                       "optimization", "smoothing", "quality"};
   Names expected{"neighbors", "graph", "outliers", "neighbors", "graph", "parts"};
@@ -130,10 +127,10 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     fractions[progress.stage].push_back(progress.fraction);
     return true;
   };
-  test::surfaceOf(test::spiralSphere(40000), options);
+  surfaceOf(spiralSphere(40000), options);
   ASSERT_EQ(fractions.size(), 9U);
   for (const auto& [stage, of_stage] : fractions) {
-    EXPECT_TRUE(test::areFractions(of_stage)) << stage;
+    EXPECT_TRUE(areFractions(of_stage)) << stage;
     EXPECT_EQ(of_stage.front(), 0.0) << stage;
     EXPECT_EQ(of_stage.back(), 1.0) << stage;
     EXPECT_GE(of_stage.size(), 3U) << stage;  // two of them its begin and end
@@ -141,4 +138,4 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

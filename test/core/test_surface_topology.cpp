@@ -4,16 +4,11 @@
 
 #include "glued_spheres.h"
 #include "handle_shapes.h"
-#include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 #include "topology/topologies.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 /// Whether the mesh stays in one piece when it is cut along a loop of its edges: by a walk over the
@@ -49,15 +44,15 @@ bool staysWhole(const Triangles& triangles, const std::vector<Index>& loop) {
 
 TEST(SurfaceTopology, GluedMeshesHaveTheirLoopsAndAreNotCutByThem) {
   for (const Positions& points :
-       {test::torusCloud(40, 16, 1.0, 0.4), test::doubleTorus(0.12), test::plateWithHoles(0.12)}) {
-    const test::Topology of(points);
+       {torusCloud(40, 16, 1.0, 0.4), doubleTorus(0.12), plateWithHoles(0.12)}) {
+    const Topology of(points);
     const std::vector<internal::CutLoop>& loops = of.handles.loops;
     const auto mesh = internal::meshGluedSpheres(
         of.graph.size(), internal::cutAlong(of.points, of.graph, of.rotation, loops), of.openings,
         {}, {});
     ASSERT_TRUE(mesh);
-    EXPECT_TRUE(test::isSurfaceOverAll(mesh->triangles, static_cast<Index>(of.graph.size()),
-                                       static_cast<Index>(loops.size())));
+    EXPECT_TRUE(isSurfaceOverAll(mesh->triangles, static_cast<Index>(of.graph.size()),
+                                 static_cast<Index>(loops.size())));
     for (const internal::CutLoop& loop : loops)
       EXPECT_TRUE(staysWhole(mesh->triangles, loop.nodes));
   }
@@ -72,29 +67,28 @@ void expectSound(const Surface& result, Index genus) {
 }
 
 TEST(SurfaceTopology, HandlesAreMeshed) {
-  expectSound(test::surfaceOf(test::torusCloud(60, 24)), 1);
-  expectSound(test::surfaceOf(test::doubleTorus(0.1)), 2);
-  expectSound(test::surfaceOf(test::plateWithHoles(0.1)), 5);
-  expectSound(test::surfaceOf(test::trefoil(0.2)), 1);
-  expectSound(test::surfaceOf(test::latticeOfTubes(0.07)), 28);
+  expectSound(surfaceOf(torusCloud(60, 24)), 1);
+  expectSound(surfaceOf(doubleTorus(0.1)), 2);
+  expectSound(surfaceOf(plateWithHoles(0.1)), 5);
+  expectSound(surfaceOf(trefoil(0.2)), 1);
+  expectSound(surfaceOf(latticeOfTubes(0.07)), 28);
 }
 
 TEST(SurfaceTopology, ThinTubesAndFatTori) {
   // Of 4 to 9 points around the tube, and of the least sizes.
   for (const int around : {4, 6, 9})
-    EXPECT_EQ(test::surfaceOf(test::torusCloud(40, around, 1.0, 0.0225 * around)).topology.genus, 1)
-        << around;
+    EXPECT_EQ(surfaceOf(torusCloud(40, around, 1.0, 0.0225 * around)).topology.genus, 1) << around;
   for (const int rings : {24, 32})
-    EXPECT_EQ(test::surfaceOf(test::torusCloud(rings, 12, 1.0, 0.5)).topology.genus, 1) << rings;
+    EXPECT_EQ(surfaceOf(torusCloud(rings, 12, 1.0, 0.5)).topology.genus, 1) << rings;
 }
 
 TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
-  const Positions points = 10.0 * test::torusCloud(60, 24).array() + 3.0;
-  const Surface result = test::surfaceOf(points);
+  const Positions points = 10.0 * torusCloud(60, 24).array() + 3.0;
+  const Surface result = surfaceOf(points);
   ASSERT_EQ(result.handles.size(), 1U);
   const HandleLoop& handle = result.handles.front();
   EXPECT_EQ(handle.loop.size(), 24U);
-  EXPECT_NEAR(handle.length, 2.0 * test::kPi * 4.0, 0.3);
+  EXPECT_NEAR(handle.length, 2.0 * kPi * 4.0, 0.3);
   EXPECT_NEAR((handle.center.array() - 3.0).matrix().norm(), 10.0, 0.1);
   EXPECT_EQ(handle.certainty, 1.0);
   EXPECT_FALSE(handle.is_cut);
@@ -102,63 +96,63 @@ TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
 }
 
 TEST(SurfaceTopology, NoneIsASphere) {
-  Options options = test::quick();
+  Options options = quick();
   options.handles = HandleMode::None;
-  const Surface result = test::surfaceOf(test::torusCloud(60, 24), options);
-  EXPECT_TRUE(test::isSphereOverAll(result.triangles, 60 * 24));
+  const Surface result = surfaceOf(torusCloud(60, 24), options);
+  EXPECT_TRUE(isSphereOverAll(result.triangles, 60 * 24));
   EXPECT_TRUE(result.handles.empty());
   EXPECT_EQ(result.sphere.cols(), 60 * 24);
 }
 
 TEST(SurfaceTopology, HandlesBesideOpenings) {
-  const Positions torus = test::torusCloud(80, 30, 2.5, 1.0);
+  const Positions torus = torusCloud(80, 30, 2.5, 1.0);
   for (const double beside : {3.5, 1.5}) {  // outside, and in the hole of the torus
-    const Positions holed = test::pointsWhere(torus, [&](const Eigen::Vector3d& p) {
+    const Positions holed = pointsWhere(torus, [&](const Eigen::Vector3d& p) {
       return (p - Eigen::Vector3d(beside, 0.0, 0.0)).norm() > 0.7;
     });
     Options options;
     options.surface = SurfaceMode::Open;
-    const Surface result = test::surfaceOf(holed, options);
+    const Surface result = surfaceOf(holed, options);
     test::expectSound(result, 1, 1);
     EXPECT_EQ(result.verdict, "A sound mesh with 1 handle and 1 opening.");
-    expectSound(test::surfaceOf(torus), 1);
+    expectSound(surfaceOf(torus), 1);
   }
 }
 
 TEST(SurfaceTopology, LinkedRingsAreTwoParts) {
-  const Positions ring = test::torusCloud(80, 20, 1.0, 0.25);
+  const Positions ring = torusCloud(80, 20, 1.0, 0.25);
   Positions linked = ring;
   linked.row(1).swap(linked.row(2));
   linked.row(0).array() += 1.0;
   Options options;
   options.parts = PartsMode::Each;
-  const Result result = reconstruct(test::horizontally(ring, linked), options);
+  const Result result = reconstruct(horizontally(ring, linked), options);
   ASSERT_EQ(result.surfaces.size(), 2U);
   for (const Surface& surface : result.surfaces)
     expectSound(surface, 1);
 }
 
 TEST(SurfaceTopology, ToriThatTouchAndOneSidedSurfacesAreSaidToBeUnsound) {
-  Positions tori = test::horizontally(test::torusCloud(60, 24), test::torusCloud(60, 24));
+  Positions tori = horizontally(torusCloud(60, 24), torusCloud(60, 24));
   tori.row(0).tail(60 * 24).array() += 2.82;
-  for (const Positions& points : {tori, test::kleinBottle(60, 30), test::moebiusBand(160, 12)}) {
-    Options options = test::quick(test::sphere());
+  for (const Positions& points : {tori, kleinBottle(60, 30), moebiusBand(160, 12)}) {
+    Options options = quick(sphere());
     options.handles = HandleMode::Auto;
-    const Surface result = test::surfaceOf(points, options);
-    EXPECT_TRUE(test::isSurfaceOverAll(result.triangles, static_cast<Index>(points.cols()),
-                                       static_cast<Index>(result.genus())));
+    const Surface result = surfaceOf(points, options);
+    EXPECT_TRUE(isSurfaceOverAll(result.triangles, static_cast<Index>(points.cols()),
+                                 static_cast<Index>(result.genus())));
     EXPECT_FALSE(result.findings.empty());
   }
-  EXPECT_TRUE(test::surfaceOf(test::kleinBottle(60, 30), test::quick()).diagnosis.is_one_sided);
+  EXPECT_TRUE(surfaceOf(kleinBottle(60, 30), quick()).diagnosis.is_one_sided);
 }
 
 TEST(SurfaceTopology, WorksWithTheOtherOptions) {
-  const Positions torus = test::torusCloud(60, 24);
+  const Positions torus = torusCloud(60, 24);
   Options smoothed;
   smoothed.smoothing = 3;
   smoothed.details = true;
   smoothed.embedding.history_vertices = 100;
-  const Surface smooth = test::surfaceOf(torus, smoothed);
+  const Surface smooth = surfaceOf(torus, smoothed);
   EXPECT_EQ(smooth.topology.genus, 1);
   EXPECT_EQ(smooth.smoothed.cols(), torus.cols());
   EXPECT_TRUE(smooth.vertex_residuals.empty());
@@ -167,21 +161,21 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   consolidated.consolidation = ConsolidationMode::Auto;
   consolidated.outliers = OutlierMode::Auto;
   const Positions scattered =
-      test::horizontally(test::withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));
-  EXPECT_EQ(test::surfaceOf(scattered, consolidated).topology.genus, 1);
-  EXPECT_EQ(test::surfaceOf(torus, test::quick()).topology.genus, 1);
+      horizontally(withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));
+  EXPECT_EQ(surfaceOf(scattered, consolidated).topology.genus, 1);
+  EXPECT_EQ(surfaceOf(torus, quick()).topology.genus, 1);
   // The published method is a sphere.
-  EXPECT_EQ(test::surfaceOf(torus, test::quick(test::paper())).topology.genus, 0);
+  EXPECT_EQ(surfaceOf(torus, quick(paper())).topology.genus, 0);
 }
 
 TEST(SurfaceTopology, WithinATimeLimitThereIsASurfaceOrNone) {
-  const Positions torus = test::torusCloud(30, 12);
+  const Positions torus = torusCloud(30, 12);
   Options options;
   for (const double seconds : {0.0, 1e-3, 3e-3, 1e-2}) {
     options.time_limit = seconds;
     Surface hasty;
     try {
-      hasty = test::surfaceOf(torus, options);
+      hasty = surfaceOf(torus, options);
     } catch (const ComputeError&) {  // there was no mesh in time
       EXPECT_GT(seconds, 0.0);
       continue;
@@ -193,4 +187,4 @@ TEST(SurfaceTopology, WithinATimeLimitThereIsASurfaceOrNone) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

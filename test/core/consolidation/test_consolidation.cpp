@@ -3,17 +3,8 @@
 #include "../reconstructions.h"
 #include "neighbor_search.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::horizontally;
-using test::randomSphere;
-using test::spiralSphere;
-using test::withNoise;
 
 /// Root mean square distance from the unit sphere.
 double roughnessOf(const Positions& points) {
@@ -24,7 +15,7 @@ double shortestDistance(const Positions& points) {
   const NeighborLists lists = findNearestNeighbors(points, 1);
   double shortest = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < points.cols(); ++i)
-    for (const Index j : test::rowOf(lists, i))
+    for (const Index j : rowOf(lists, i))
       if (j != i)
         shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
   return shortest;
@@ -81,9 +72,9 @@ TEST(Consolidation, NoiseIsTakenOffAndMeasuredAndLayersBecomeOne) {
   EXPECT_GT(shortestDistance(consolidate(layers).points), 0.002);
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = test::surfaceOf(layers, options);
+  const Surface mesh = surfaceOf(layers, options);
   EXPECT_TRUE(mesh.self_intersections.empty());
-  EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * test::kPi);
+  EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * kPi);
 }
 
 TEST(Consolidation, ThinLimbsAreNoThickNoise) {
@@ -91,7 +82,7 @@ TEST(Consolidation, ThinLimbsAreNoThickNoise) {
   constexpr Index n = 1800;
   Positions tube(3, n);
   for (Index i = 0; i < n; ++i) {
-    const double angle = 2.0 * test::kPi * (i % 6 + 0.5 * (i / 6 % 2)) / 6.0;
+    const double angle = 2.0 * kPi * (i % 6 + 0.5 * (i / 6 % 2)) / 6.0;
     tube.col(i) << 0.1 * std::cos(angle), 0.1 * std::sin(angle), 0.09 * (i / 6);
   }
   const Consolidation result = consolidate(tube);
@@ -127,18 +118,18 @@ TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
 TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   const Positions base = withNoise(randomSphere(2000, 10), 0.02, 11);
   const Positions points = horizontally(base, base.leftCols(50));
-  const Surface plain = test::surfaceOf(points);
+  const Surface plain = surfaceOf(points);
   EXPECT_EQ(plain.consolidated.cols(), 0);
   EXPECT_EQ(plain.moved().cols(), 0);
   EXPECT_EQ(plain.consolidation.merged, 0U);
 
-  Options options = test::sphere();
+  Options options = sphere();
   options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = test::surfaceOf(points, options);
+  const Surface mesh = surfaceOf(points, options);
   const Consolidation expected = consolidate(points);
   EXPECT_EQ(mesh.consolidated, expected.points);
   EXPECT_EQ(mesh.vertex_of_input, expected.point_of_input);
-  EXPECT_EQ(mesh.triangles, test::surfaceOf(expected.points).triangles);
+  EXPECT_EQ(mesh.triangles, surfaceOf(expected.points).triangles);
   EXPECT_EQ(mesh.duplicates(), 50U);
   EXPECT_EQ(mesh.consolidation.merged, expected.report.merged);
   EXPECT_EQ(mesh.vertexCount() + mesh.consolidation.merged, 2000U);
@@ -150,14 +141,14 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
 
   // Neighbours of the points as they were say nothing about where they are now.
   const Surface with_search =
-      test::surfaceOf(points, options, [](const std::vector<Index>&) -> NeighborSearch {
+      surfaceOf(points, options, [](const std::vector<Index>&) -> NeighborSearch {
         ADD_FAILURE() << "searched";
         return {};
       });
   EXPECT_EQ(with_search.triangles, mesh.triangles);
 
   options.smoothing = 2;
-  const Surface smoothed = test::surfaceOf(points, options);
+  const Surface smoothed = surfaceOf(points, options);
   EXPECT_EQ(smoothed.consolidated, mesh.consolidated);
   EXPECT_EQ(smoothed.moved(), smoothed.smoothed);
   EXPECT_NE(smoothed.smoothed, smoothed.consolidated);
@@ -169,12 +160,12 @@ TEST(Consolidation, AnyPointsHaveAClosedMesh) {
   options.intersections = IntersectionMode::Keep;
   for (const Index n : {4, 19, 20, 25, 100, 400}) {
     const Positions blob = withNoise(Positions::Zero(3, n), 1.0, static_cast<std::uint64_t>(n));
-    EXPECT_TRUE(test::surfaceOf(blob, options).topology.isSphere()) << n;
+    EXPECT_TRUE(surfaceOf(blob, options).topology.isSphere()) << n;
     Positions line = 1e-3 * blob;
     line.row(0).setLinSpaced(0.0, 1.0);
-    EXPECT_TRUE(test::surfaceOf(line, options).topology.isSphere()) << n;
+    EXPECT_TRUE(surfaceOf(line, options).topology.isSphere()) << n;
   }
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

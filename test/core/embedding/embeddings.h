@@ -4,9 +4,10 @@
 #include "embedding_energy.h"
 #include "graph_hierarchy.h"
 #include "graphs.h"
-#include "helpers.h"
 #include "multilevel_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
 
 /// A surface and short calls for the tests of the multilevel embedding and its parts.
 namespace spherical_param::test {

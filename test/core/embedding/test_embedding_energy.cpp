@@ -2,12 +2,8 @@
 
 #include "embeddings.h"
 
-#include <gtest/gtest.h>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using namespace test;
 
 double dot(const Positions& x, const Positions& y) {
   return x.cwiseProduct(y).sum();
@@ -42,4 +38,4 @@ TEST(EmbeddingEnergy, DerivativesAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

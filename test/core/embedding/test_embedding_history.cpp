@@ -3,23 +3,19 @@
 #include "embeddings.h"
 #include "ordered_points.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 TEST(EmbeddingHistory, KeepsAtMostTheLimitAndEveryLevelFromTheStartToTheEnd) {
-  const Graph graph = test::dentedCloud(3000).graph;
+  const Graph graph = dentedCloud(3000).graph;
   const auto hierarchy = internal::buildGraphHierarchy(graph, 1, 200);
-  test::Setting options;
-  const Positions expected = test::embedByLevels(graph, hierarchy, options).directions;
+  Setting options;
+  const Positions expected = embedByLevels(graph, hierarchy, options).directions;
   for (const auto& [vertices, most] : std::vector<std::pair<Index, int>>{
            {1, 2}, {4, 3}, {150, 7}, {250, 40}, {700, 12}, {1500, 40}, {2999, 5}, {60000, 1000}}) {
     options.history_vertices = vertices;
     options.history_frames = most;
-    const Embedding embedding = test::embedByLevels(graph, hierarchy, options);
+    const Embedding embedding = embedByLevels(graph, hierarchy, options);
     EXPECT_EQ(embedding.directions, expected);
     const std::vector<Index>& shown = embedding.history.vertices;
     const std::vector<HistoryFrame>& frames = embedding.history.frames;
@@ -39,13 +35,13 @@ TEST(EmbeddingHistory, KeepsAtMostTheLimitAndEveryLevelFromTheStartToTheEnd) {
 }
 
 TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
-  const Positions sphere = internal::orderPoints(test::randomSphere(6000, 3), 1).points;
+  const Positions sphere = internal::orderPoints(randomSphere(6000, 3), 1).points;
   for (const Index vertices : {400, 900, 1500}) {
-    test::Setting options;
+    Setting options;
     options.history_vertices = vertices;
     const EmbeddingHistory history = internal::EmbeddingRecorder(6000, options).take();
     // No place of the sphere is further from the next node than some of their even distances.
-    const double even = std::sqrt(4.0 * test::kPi / static_cast<double>(history.vertices.size()));
+    const double even = std::sqrt(4.0 * kPi / static_cast<double>(history.vertices.size()));
     for (Index i = 0; i < 6000; ++i)
       EXPECT_LT((sphere(Eigen::all, history.vertices).colwise() - sphere.col(i))
                     .colwise()
@@ -56,4 +52,4 @@ TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

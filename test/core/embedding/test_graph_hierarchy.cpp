@@ -1,21 +1,16 @@
 #include "graph_hierarchy.h"
 
 #include "graphs.h"
-#include "helpers.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::buildGraphHierarchy;
 using internal::GraphHierarchy;
 using internal::HierarchyLevel;
-using test::graphOfMesh;
-using test::randomSphere;
 
 Graph sphereGraph(const Positions& points) {
   return graphOfMesh(points, triangulateSphere(points));
@@ -40,7 +35,7 @@ std::vector<double> distancesFrom(const Graph& graph, Index source) {
 }
 
 bool areJoined(const Graph& graph, Index i, Index j) {
-  const std::vector<Index> row = test::rowOf(graph, i);
+  const std::vector<Index> row = rowOf(graph, i);
   return std::binary_search(row.begin(), row.end(), j);
 }
 
@@ -126,7 +121,7 @@ TEST(GraphHierarchy, LevelsAreSeveralTimesSmallerConnectedAndSymmetric) {
     for (const double distance : distancesFrom(level.graph, 0))
       EXPECT_TRUE(std::isfinite(distance));
     for (Index i = 0; i < static_cast<Index>(level.graph.size()); ++i)
-      for (const Index j : test::rowOf(level.graph, i))
+      for (const Index j : rowOf(level.graph, i))
         EXPECT_TRUE(areJoined(level.graph, j, i));
   }
   EXPECT_LE(finer, 100.0);
@@ -139,8 +134,8 @@ TEST(GraphHierarchy, NeverFewerThanFourNodes) {
   for (Index i = 0; i < 12; ++i)
     for (Index j = 0; j < i; ++j)
       edges.emplace_back(i, j);
-  EXPECT_TRUE(buildGraphHierarchy(test::unitGraph(12, edges), 1, 4).levels.empty());
+  EXPECT_TRUE(buildGraphHierarchy(unitGraph(12, edges), 1, 4).levels.empty());
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,12 +3,8 @@
 #include "embeddings.h"
 #include "paper_method.h"
 
-#include <gtest/gtest.h>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using namespace test;
 
 TEST(MultilevelEmbedding, IcosahedronByHand) {
   const double golden = (1.0 + std::sqrt(5.0)) / 2.0;
@@ -169,4 +165,4 @@ TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -2,12 +2,9 @@
 
 #include "graph.h"
 #include "graphs.h"
-#include "helpers.h"
 #include "spherical_param/reconstruct.h"
 
 #include <gtest/gtest.h>
-
-#include <set>
 
 namespace spherical_param::test {
 

@@ -1,28 +1,17 @@
 #include "graphs.h"
-#include "local_delaunay_graph.h"
 
 #include "graph_helpers.h"
 
 #include <Eigen/Eigenvalues>
 
-#include <limits>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::bruteForceNeighbors;
-using test::bruteForceSearch;
-using test::Edges;
-using test::edgesOf;
-using test::horizontally;
-using test::randomSphere;
-using test::rowOf;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// From the k nearest, and more where they are wanted.
 NeighborGraph build(const Positions& points, int k = 12) {
-  return test::graphOf(points, bruteForceNeighbors(points, k), bruteForceSearch(points));
+  return graphOf(points, bruteForceNeighbors(points, k), bruteForceSearch(points));
 }
 
 /// Points with a tangent plane but without a certified cell.
@@ -43,7 +32,7 @@ internal::Stars starsOf(const Positions& points, int k = 12) {
 
 /// What every graph must be, for four points and more.
 void expectSound(const Positions& points, const NeighborGraph& result) {
-  test::expectConnectedGraphOf(points, result);
+  expectConnectedGraphOf(points, result);
   for (Index i = 0; i < points.cols(); ++i)
     EXPECT_GE(rowOf(result.graph, i).size(), 3U);
 }
@@ -151,10 +140,10 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
 TEST(LocalDelaunayGraph, UpTo32NeighboursAreUsedHoweverTheyCome) {
   const Positions points = randomSphere(300, 4);
   const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const Edges expected = edgesOf(test::graphOf(points, lists).graph);
+  const Edges expected = edgesOf(graphOf(points, lists).graph);
   for (const int k : {0, 5, 12, 40})
     EXPECT_EQ(edgesOf(build(points, k).graph), expected) << k;
-  EXPECT_EQ(edgesOf(test::graphOf(points, test::untidy(lists)).graph), expected);
+  EXPECT_EQ(edgesOf(graphOf(points, untidy(lists)).graph), expected);
   // Without a search, or with one that finds nothing, the lists are all there is.
   const NeighborSearch blind = [](const std::vector<Index>& some, int) {
     NeighborLists nothing;
@@ -163,9 +152,9 @@ TEST(LocalDelaunayGraph, UpTo32NeighboursAreUsedHoweverTheyCome) {
   };
   for (const int k : {0, 1, 2, 3, 12}) {
     const NeighborLists few = bruteForceNeighbors(points, k);
-    const NeighborGraph result = test::graphOf(points, few);
+    const NeighborGraph result = graphOf(points, few);
     expectSound(points, result);
-    EXPECT_EQ(edgesOf(test::graphOf(points, few, blind).graph), edgesOf(result.graph));
+    EXPECT_EQ(edgesOf(graphOf(points, few, blind).graph), edgesOf(result.graph));
     EXPECT_EQ(countUncertified(test::starsOf(points, few)) > 0, k == 12);
   }
   for (const Index n : {0, 1, 2, 3})
@@ -200,11 +189,11 @@ TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
   int compared = 0;
   for (std::uint64_t seed = 0; seed <= 60; ++seed) {
     // Ties, too few points, and lists that are too short.
-    const Positions points = seed == 0 ? test::cubeGrid(2) : randomSphere(seed > 30 ? 12 : 9, seed);
+    const Positions points = seed == 0 ? cubeGrid(2) : randomSphere(seed > 30 ? 12 : 9, seed);
     const NeighborLists lists = bruteForceNeighbors(points, 8);
     const internal::Stars stars = test::starsOf(points, lists);
     EXPECT_EQ(countWithoutPlane(stars), points.cols());
-    const NeighborGraph result = test::graphOf(points, lists);
+    const NeighborGraph result = graphOf(points, lists);
     const Edges expected = gabrielGraph(points, lists);
     if (!result.bridges.empty() || hasWeakPoint(points.cols(), expected))
       continue;
@@ -270,8 +259,7 @@ std::vector<Positions> awkwardClouds() {
   Positions other = patch.colwise() + Eigen::Vector3d(12.0, 0.0, 0.0);
   other = horizontally(Eigen::Vector3d(9.5, 3.5, 0.0), other);
   std::vector<Positions> clouds{
-      test::cubeGrid(3), test::cubeGrid(7), test::spiralSphere(500), plate, patch,
-      horizontally(patch, other),
+      cubeGrid(3), cubeGrid(7), spiralSphere(500), plate, patch, horizontally(patch, other),
       // Clusters so small that the squares of their distances are near the least there are, or 0.
       horizontally(sphere, 1e-150 * randomSphere(40, 12)),
       horizontally(sphere, 1e-250 * randomSphere(40, 12)),
@@ -287,7 +275,7 @@ TEST(LocalDelaunayGraph, EveryCloudHasASoundGraphWithoutACutNode) {
     SCOPED_TRACE(points.cols());
     const NeighborGraph result = build(points);
     expectSound(points, result);
-    EXPECT_FALSE(test::hasCutNode(result.graph));
+    EXPECT_FALSE(hasCutNode(result.graph));
   }
   for (const double width : {0.1, 1e-2, 1e-3, 1e-8}) {
     Positions needle = randomSphere(200, 14);
@@ -300,4 +288,4 @@ TEST(LocalDelaunayGraph, EveryCloudHasASoundGraphWithoutACutNode) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

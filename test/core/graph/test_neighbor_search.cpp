@@ -3,10 +3,8 @@
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::rowOf;
 
 /// List k holds `count` nearest points of queries[k], the point itself among them.
 void expectNearest(const Positions& points, const std::vector<Index>& queries, int count,
@@ -30,18 +28,18 @@ void expectNearest(const Positions& points, const std::vector<Index>& queries, i
 }
 
 TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
-  for (const Positions& points : {test::randomSphere(300, 1), test::cubeGrid(6)}) {
+  for (const Positions& points : {randomSphere(300, 1), cubeGrid(6)}) {
     const NeighborSearch search = makeNeighborSearch(points);
     const std::vector<Index> queries{7, 0, 7, 120, 3};
     for (const int count : {0, 1, 12, 10000})
       expectNearest(points, queries, count, search(queries, count));
-    expectNearest(points, test::range(0, points.cols()), 5, findNearestNeighbors(points, 5));
+    expectNearest(points, range(0, points.cols()), 5, findNearestNeighbors(points, 5));
   }
   EXPECT_EQ(findNearestNeighbors(Positions(3, 0), 5).size(), 0U);
   EXPECT_EQ(findNearestNeighbors(Positions::Zero(3, 1), 5).indices, std::vector<Index>{0});
   // 50,000 lists of as many entries are more than 2^31.
-  EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
+  EXPECT_THROW(findNearestNeighbors(spiralSphere(50000), 50000), InvalidInput);
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -4,17 +4,11 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::DeviatingPoints;
 using internal::deviatingPoints;
-using test::bruteForceNeighbors;
-using test::horizontally;
-using test::outliersOf;
-using test::randomSphere;
-using test::range;
-using test::spiralSphere;
 
 void expectFound(const Positions& surface, const Positions& outliers) {
   const Positions points = horizontally(surface, outliers);
@@ -47,7 +41,7 @@ TEST(Outliers, ShapesHaveNoneHoweverTheyAreSampled) {
   const Positions others = spiralSphere(300).colwise() + Eigen::Vector3d(3.0, 0.0, 0.0);
   for (const Positions& points :
        {randomSphere(4, 15), randomSphere(31, 15), randomSphere(60, 5), randomSphere(2000, 2),
-        test::cubeGrid(15), ellipsoid, test::bentTube(20.0, 2.0, 16).points, halfDenseSphere(1500),
+        cubeGrid(15), ellipsoid, bentTube(20.0, 2.0, 16).points, halfDenseSphere(1500),
         spiralSphere(2000).leftCols(900).eval(), horizontally(spiralSphere(2000), others)})
     for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation})
       EXPECT_TRUE(outliersOf(points, mode).empty()) << points.cols() << " points";
@@ -58,7 +52,7 @@ DeviatingPoints byDefinition(const Positions& points, const NeighborLists& lists
   const auto n = static_cast<std::size_t>(points.cols());
   std::vector<bool> is_outlier(n, false);
   const auto neighbors = [&](std::size_t i) {
-    std::vector<Index> left = test::rowOf(lists, static_cast<Index>(i));
+    std::vector<Index> left = rowOf(lists, static_cast<Index>(i));
     left.erase(std::remove_if(left.begin(), left.end(),
                               [&](Index j) { return is_outlier[static_cast<std::size_t>(j)]; }),
                left.end());
@@ -126,7 +120,7 @@ TEST(DeviatingPoints, AreThoseOfTheDefinitionHoweverTheListsAreOrdered) {
     ASSERT_EQ(found.scores.size(), expected.scores.size());
     for (std::size_t i = 0; i < expected.scores.size(); ++i)
       EXPECT_NEAR(found.scores[i], expected.scores[i], 1e-9);
-    EXPECT_EQ(deviatingPoints(points, test::untidy(lists), sigma, {}).scores, found.scores);
+    EXPECT_EQ(deviatingPoints(points, untidy(lists), sigma, {}).scores, found.scores);
   }
 }
 
@@ -142,4 +136,4 @@ TEST(DeviatingPoints, LinesAndShortListsAreNoDanger) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,13 +3,8 @@
 #include "core/reconstructions.h"
 #include "graph_helpers.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::horizontally;
-using test::randomSphere;
-using test::range;
-using test::spiralSphere;
 
 using Parts = std::vector<std::vector<Index>>;
 
@@ -26,8 +21,8 @@ Parts partsOf(const Positions& points, int min_points) {
 TEST(Parts, AreTheSurfacesOfACloudTheLargestFirst) {
   EXPECT_EQ(findParts(horizontally(movedTo(4.0, spiralSphere(300)), spiralSphere(500))),
             (Parts{range(300, 800), range(0, 300)}));
-  for (const Positions& points : {spiralSphere(1000), randomSphere(1000, 5), test::cubeGrid(12),
-                                  test::withNoise(spiralSphere(1000), 0.02, 4)})
+  for (const Positions& points : {spiralSphere(1000), randomSphere(1000, 5), cubeGrid(12),
+                                  withNoise(spiralSphere(1000), 0.02, 4)})
     EXPECT_EQ(findParts(points), (Parts{range(0, points.cols())}));
 }
 
@@ -66,7 +61,7 @@ TEST(Parts, SmallSheetsBesideLargeOnesBelongToThem) {
 
 TEST(Parts, AreJoinedAlongARimWhereTheSpacingJumps) {
   // Contours of a tube with caps, four times as far apart as their points and those of the caps.
-  const double step = 2.0 * test::kPi / 60;
+  const double step = 2.0 * kPi / 60;
   std::vector<Eigen::Vector3d> points;
   for (Index slice = 0; slice < 6; ++slice)
     for (Index i = 0; i < 60; ++i) {
@@ -78,10 +73,10 @@ TEST(Parts, AreJoinedAlongARimWhereTheSpacingJumps) {
       for (Index k = -10; k <= 10; ++k)
         if (const Eigen::Vector3d p(step * i, step * k, z); p.head<2>().norm() < 1.0 - 0.7 * step)
           points.push_back(p);
-  const Positions contours = test::positionsOf(points);
+  const Positions contours = positionsOf(points);
   EXPECT_EQ(findParts(contours), Parts{range(0, contours.cols())});
-  const Surface surface = test::surfaceOf(contours);
-  EXPECT_TRUE(test::isSphereOverAll(surface.triangles, static_cast<Index>(contours.cols())));
+  const Surface surface = surfaceOf(contours);
+  EXPECT_TRUE(isSphereOverAll(surface.triangles, static_cast<Index>(contours.cols())));
   EXPECT_EQ(surface.intersecting_triangles, 0U);
 }
 
@@ -89,7 +84,7 @@ TEST(Parts, AreNotJoinedToNetsOfPointsInside) {
   // A net of 100 points in a sphere of 2,000, which their stars reach, but farther from each other.
   const Positions sphere = spiralSphere(2000);
   const Positions points = horizontally(sphere, 0.7 * randomSphere(100, 3));
-  const NeighborLists lists = test::bruteForceNeighbors(points, 32);
+  const NeighborLists lists = bruteForceNeighbors(points, 32);
   const internal::Stars stars = test::starsOf(points, lists);
   const Graph agreed = internal::agreedGraph(points, stars, {});
   std::size_t reaching = 0;
@@ -112,4 +107,4 @@ TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,16 +1,8 @@
 #include "../reconstructions.h"
-#include "cloud_surfaces.h"
 #include "graph_helpers.h"
-#include "graphs.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::horizontally;
-using test::outliersOf;
-using test::randomSphere;
-using test::range;
-using test::spiralSphere;
 
 Positions at(const Eigen::Vector3d& center, const Positions& points) {
   return points.colwise() + center;
@@ -69,23 +61,23 @@ TEST(StrayPoints, AreThoseALittleOffASurface) {
   // 5,000 points are 0.05 apart; on a noisy sphere the same distance is none.
   const Positions near = horizontally(1.03 * spiralSphere(7), 0.98 * spiralSphere(4));
   expectStray(spiralSphere(5000), near);
-  EXPECT_TRUE(outliersOf(horizontally(test::withNoise(spiralSphere(5000), 0.01, 1), near),
-                         OutlierMode::Auto)
-                  .empty());
+  EXPECT_TRUE(
+      outliersOf(horizontally(withNoise(spiralSphere(5000), 0.01, 1), near), OutlierMode::Auto)
+          .empty());
 }
 
 TEST(StrayPoints, HaveTheirDistanceInSpacings) {
   const Positions points = horizontally(spiralSphere(600), Eigen::Vector3d(0.0, 2.0, 0.0));
-  const std::vector<StrayPoint> found = test::localDelaunayGraph(points).stray_points;
+  const std::vector<StrayPoint> found = localDelaunayGraph(points).stray_points;
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].point, 600);
-  EXPECT_NEAR(found[0].distance, 1.0 / test::sphereSpacing(600), 0.2 * found[0].distance);
+  EXPECT_NEAR(found[0].distance, 1.0 / sphereSpacing(600), 0.2 * found[0].distance);
 }
 
 TEST(StrayPoints, ThatAreNotLeftOutAreVerticesAndReported) {
   const Positions stray = 1.6 * spiralSphere(5);
-  const Surface result = test::surfaceOf(
-      horizontally(horizontally(stray, spiralSphere(800)), stray.leftCols(2)), test::sphere());
+  const Surface result =
+      surfaceOf(horizontally(horizontally(stray, spiralSphere(800)), stray.leftCols(2)), sphere());
   EXPECT_EQ(result.outliers, (std::vector<Index>{0, 1, 2, 3, 4}));
   EXPECT_EQ(result.vertexCount(), 805U);
   ASSERT_FALSE(result.findings.empty());
@@ -93,4 +85,4 @@ TEST(StrayPoints, ThatAreNotLeftOutAreVerticesAndReported) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -5,23 +5,20 @@
 #include "spherical_param/sphere_triangulation.h"
 #include "triangle_lists.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
-using test::Mesh;
-
 Mesh cornerTetrahedron() {
-  Mesh mesh{Positions::Zero(3, 4), test::trianglesOf({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
+  Mesh mesh{Positions::Zero(3, 4), trianglesOf({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
   mesh.points.rightCols(3) = Eigen::Matrix3d::Identity();
   return mesh;
 }
 
 /// A unit sphere of n points.
 Mesh sphere(Index n) {
-  const Positions points = test::spiralSphere(n);
+  const Positions points = spiralSphere(n);
   return {points, triangulateSphere(points)};
 }
 
@@ -92,7 +89,7 @@ TEST(MeshMeasures, FlatMeshHasTheCentroidOfItsSurface) {
   Positions points = Positions::Zero(3, 3);
   points.col(1) << 3.0, 0.0, 0.0;
   points.col(2) << 0.0, 3.0, 0.0;
-  const MeshMeasures measures = measureMesh(points, test::trianglesOf({{0, 1, 2}, {0, 2, 1}}));
+  const MeshMeasures measures = measureMesh(points, trianglesOf({{0, 1, 2}, {0, 2, 1}}));
   EXPECT_EQ(measures.volume, 0.0);
   EXPECT_NEAR(measures.area, 9.0, 1e-14);
   EXPECT_LT((measures.centroid - Eigen::Vector3d(1.0, 1.0, 0.0)).norm(), 1e-15);
@@ -111,4 +108,4 @@ TEST(AreaWeightedNormals, AreTheSumsOfTheTriangles) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -5,12 +5,8 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::tetrahedron;
-using test::torusTriangles;
-using test::trianglesOf;
 
 Triangles joined(const Triangles& a, const Triangles& b) {
   Triangles result(3, a.cols() + b.cols());
@@ -151,4 +147,4 @@ TEST(MeshTopology, AgreesWithItsDefinitionOnRandomTrianglesAndDamagedSurfaces) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -4,7 +4,7 @@
 #include "helpers.h"
 #include "spherical_param/mesh_topology.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::RingedDisc;
@@ -13,7 +13,7 @@ using internal::ringedDisc;
 std::vector<double> evenRim(std::size_t size) {
   std::vector<double> angles;
   for (std::size_t i = 0; i < size; ++i)
-    angles.push_back(2.0 * test::kPi * static_cast<double>(i) / static_cast<double>(size));
+    angles.push_back(2.0 * kPi * static_cast<double>(i) / static_cast<double>(size));
   return angles;
 }
 
@@ -55,9 +55,9 @@ TEST(RingedDisc, HasEdgesThatGrowTowardsThePole) {
   EXPECT_NEAR(disc.distance(3, 4), 1.0, 1e-15);
   // A ring of 70 in one of 100: 1 - pi / 100 over 1 + pi / 70.
   const RingedDisc large = ringedDisc(evenRim(100));
-  EXPECT_NEAR(large.radii[100], (1.0 - test::kPi / 100) / (1.0 + test::kPi / 70), 1e-15);
+  EXPECT_NEAR(large.radii[100], (1.0 - kPi / 100) / (1.0 + kPi / 70), 1e-15);
   EXPECT_GT(large.distance(100, 101), 1.3 * large.distance(0, 1));
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

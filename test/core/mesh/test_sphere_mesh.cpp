@@ -6,11 +6,10 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::SphereMesh;
-using test::tetrahedron;
 
 /// Two hubs, 0 and 1, over and under a ring of `ring` vertices.
 Triangles bipyramid(Index ring) {
@@ -43,7 +42,7 @@ Triangles compact(const SphereMesh& mesh, Index vertex_count, Index& present) {
 void expectSound(const SphereMesh& mesh, Index vertex_count) {
   Index present = 0;
   const Triangles triangles = compact(mesh, vertex_count, present);
-  ASSERT_TRUE(test::isSphereOverAll(triangles, present));
+  ASSERT_TRUE(isSphereOverAll(triangles, present));
   std::vector<Index> degree(static_cast<std::size_t>(vertex_count), 0);
   Index count = 0;
   for (Index t = 0; t < mesh.size(); ++t) {
@@ -178,12 +177,12 @@ private:
 };
 
 Triangles shuffled(const Triangles& triangles, std::uint64_t seed) {
-  return triangles(Eigen::all, test::shuffledRange(triangles.cols(), seed));
+  return triangles(Eigen::all, shuffledRange(triangles.cols(), seed));
 }
 
 TEST(SphereMesh, HoldsItsTrianglesInAnyOrder) {
   for (const Index n : {4, 5, 30, 3000}) {
-    const Triangles triangles = shuffled(triangulateSphere(test::spiralSphere(n)), 1);
+    const Triangles triangles = shuffled(triangulateSphere(spiralSphere(n)), 1);
     const SphereMesh mesh(triangles, static_cast<std::size_t>(n));
     EXPECT_EQ(mesh.triangles(), triangles);
     expectSound(mesh, n);
@@ -247,4 +246,4 @@ TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphereAndAreRolledBackToTheLastInd
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

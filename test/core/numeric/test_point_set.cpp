@@ -4,12 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::randomSphere;
 
 TEST(PointSet, OneBitOffAPlaneIsNotCoplanar) {
   Positions points = randomSphere(200, 3);
@@ -69,7 +65,7 @@ TEST(PointSet, PlanesAreFoundExactlyWhateverTheMagnitudes) {
 TEST(PointSet, PlanesOfTinyDifferencesBesideLargeOnesAreFoundExactly) {
   const double m = std::numeric_limits<double>::max();
   const auto are_coplanar = [](const std::vector<Eigen::Vector3d>& places) {
-    return areCoplanar(test::positionsOf(places));
+    return areCoplanar(positionsOf(places));
   };
   for (const double tiny : {1e-100, 1e-120, 1e-200, 0x1p-1074}) {
     SCOPED_TRACE(tiny);
@@ -85,4 +81,4 @@ TEST(PointSet, PlanesOfTinyDifferencesBesideLargeOnesAreFoundExactly) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

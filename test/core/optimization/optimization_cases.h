@@ -4,12 +4,11 @@
 #include "energy_mesh.h"
 #include "graph.h"
 #include "graphs.h"
-#include "helpers.h"
 #include "sphere_mesh.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "surface_energy.h"
 
-#include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 /// Meshes to optimise, and the energy from its definition.
 namespace spherical_param::test {

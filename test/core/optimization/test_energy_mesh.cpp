@@ -1,12 +1,7 @@
 #include "energy_mesh.h"
 
-#include "helpers.h"
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
-
-#include <gtest/gtest.h>
-
-#include <limits>
 
 namespace spherical_param::test {
 namespace {

@@ -1,10 +1,6 @@
 #include "flips.h"
 
-#include "helpers.h"
 #include "optimization_cases.h"
-
-#include <Eigen/Geometry>
-#include <gtest/gtest.h>
 
 #include <stdexcept>
 

@@ -4,9 +4,7 @@
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 
-#include <gtest/gtest.h>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::OpenMesh;
@@ -32,19 +30,19 @@ struct Pierced {
   }
   MeshTopology topology() const { return checkTopology(internal::surfaceOf(mesh), 400); }
 
-  Positions points = test::spiralSphere(400);
+  Positions points = spiralSphere(400);
   OpenMesh mesh;
 };
 
 TEST(IntersectionRemoval, OtherTrianglesKeepEveryVertex) {
-  test::Case of = test::ellipsoid(300, 0.8, 0.3);
-  of.triangles = test::scrambled(of.triangles, 300, 100, 2);
+  Case of = ellipsoid(300, 0.8, 0.3);
+  of.triangles = scrambled(of.triangles, 300, 100, 2);
   ASSERT_FALSE(findSelfIntersections(of.points, of.triangles).empty());
   OpenMesh mesh = closedMesh(of.triangles);
   const std::optional<Removal> removal = clearIntersections(of.points, {20, 0}, mesh);
   ASSERT_TRUE(removal);
   EXPECT_EQ(removal->vertices + removal->triangles, 0U);
-  EXPECT_TRUE(test::isSphereOverAll(mesh.triangles, 300));
+  EXPECT_TRUE(isSphereOverAll(mesh.triangles, 300));
   EXPECT_TRUE(findSelfIntersections(of.points, mesh.triangles).empty());
 }
 
@@ -74,9 +72,9 @@ TEST(IntersectionRemoval, TakesOutAVertexOrTrianglesWithinItsLimits) {
 
 TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   // A third of the vertices are anywhere.
-  Positions points = test::spiralSphere(600);
-  points.rightCols(200) = test::randomCube(200, 1) * 0.2;
-  OpenMesh mesh = closedMesh(triangulateSphere(test::spiralSphere(600)));
+  Positions points = spiralSphere(600);
+  points.rightCols(200) = randomCube(200, 1) * 0.2;
+  OpenMesh mesh = closedMesh(triangulateSphere(spiralSphere(600)));
   const std::size_t left_out =
       internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
   const Triangles surface = internal::surfaceOf(mesh);
@@ -100,7 +98,7 @@ TEST(IntersectionRemoval, CountsWhatIsLeftOutBecauseItIntersects) {
 }
 
 TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
-  const Positions points = test::spiralSphere(600);
+  const Positions points = spiralSphere(600);
   const Triangles triangles = triangulateSphere(points);
   // The number of triangles within a height of the pole, and of those that stay if they are a piece
   // of their own beside the rest of the sphere, or alone.
@@ -126,4 +124,4 @@ TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -3,8 +3,6 @@
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 namespace {
 

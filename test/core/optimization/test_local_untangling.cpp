@@ -1,10 +1,7 @@
 #include "local_untangling.h"
 
-#include "helpers.h"
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
-
-#include <gtest/gtest.h>
 
 namespace spherical_param::test {
 namespace {

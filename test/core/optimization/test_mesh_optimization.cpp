@@ -1,13 +1,7 @@
 #include "mesh_optimization.h"
 
-#include "graphs.h"
-#include "helpers.h"
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
-
-#include <gtest/gtest.h>
-
-#include <string>
 
 namespace spherical_param::test {
 namespace {

@@ -4,9 +4,7 @@
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::OpenMesh;
@@ -16,7 +14,7 @@ using internal::OpenPlaces;
 struct DoublePyramid {
   explicit DoublePyramid(Index n) : points(3, n + 2), triangles(3, 2 * n) {
     for (Index i = 0; i < n; ++i) {
-      const double angle = 2.0 * test::kPi * i / n;
+      const double angle = 2.0 * kPi * i / n;
       points.col(i) << std::cos(angle), std::sin(angle), 0.0;
       triangles.col(2 * i) << i, (i + 1) % n, n;
       triangles.col(2 * i + 1) << (i + 1) % n, i, n + 1;
@@ -68,7 +66,7 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
   std::vector<Index> loop;
   for (Index i = 0; i < n; ++i) {
     const Index next = (i + 1) % n;
-    const double angle = 2.0 * test::kPi * i / n;
+    const double angle = 2.0 * kPi * i / n;
     for (Index ring = 0; ring < rings; ++ring) {
       points.col(ring * n + i) << std::cos(angle), std::sin(angle), 0.0;
       points.col(ring * n + i) *= 1.0 - static_cast<double>(ring) / rings;
@@ -139,4 +137,4 @@ TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

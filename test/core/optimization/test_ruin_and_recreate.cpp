@@ -1,9 +1,6 @@
 #include "ruin_and_recreate.h"
 
-#include "helpers.h"
 #include "optimization_cases.h"
-
-#include <gtest/gtest.h>
 
 namespace spherical_param::test {
 namespace {

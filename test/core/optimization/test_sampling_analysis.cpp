@@ -1,7 +1,6 @@
 #include "sampling_analysis.h"
 
 #include "graphs.h"
-#include "helpers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,9 @@
 #include "smooth_fill.h"
 
 #include "core/reconstructions.h"
-#include "open_shapes.h"
 #include "pi.h"
-#include "spherical_param/self_intersection.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 Options filled(FillMode fill) {
@@ -16,10 +14,10 @@ Options filled(FillMode fill) {
 }
 
 TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
-  const Positions points = test::pointsWhere(
-      test::spiralSphere(3000), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });
-  const Surface flat = test::surfaceOf(points, filled(FillMode::Flat));
-  const Surface smooth = test::surfaceOf(points, filled(FillMode::Smooth));
+  const Positions points = pointsWhere(
+      spiralSphere(3000), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });
+  const Surface flat = surfaceOf(points, filled(FillMode::Flat));
+  const Surface smooth = surfaceOf(points, filled(FillMode::Smooth));
   ASSERT_EQ(flat.added_vertices, 0U);
   EXPECT_EQ(flat.filled.cols(), 0);
   const Eigen::Index n = points.cols();
@@ -136,4 +134,4 @@ TEST(SmoothFill, WhatIsNoDiscStays) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,10 +1,8 @@
 #include "smoothing.h"
 
 #include "graphs.h"
-#include "helpers.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace spherical_param::test {

@@ -3,21 +3,15 @@
 #include "core/embedding/embeddings.h"
 #include "core/graph/graph_helpers.h"
 #include "core/triangulation/triangulations.h"
-#include "graphs.h"
 #include "qhull.h"
 #include "union_find.h"
 
 #include <tuple>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::paper::nearestNeighborGraph;
-using test::bruteForceNeighbors;
-using test::edgesOf;
-using test::horizontally;
-using test::randomSphere;
-using test::spiralSphere;
 
 /// Total length of the minimum spanning tree over the parts (J. B. Kruskal, 1956, on all pairs).
 double shortestJoin(const Positions& points, internal::UnionFind parts) {
@@ -36,13 +30,13 @@ TEST(PaperGraph, JoinsEachPointToItsKNearestInLongUntidyLists) {
   const Positions points = randomSphere(300, 1);
   for (const int k : {3, 7}) {
     const NeighborLists lists = bruteForceNeighbors(points, k);
-    test::Edges expected;
+    Edges expected;
     for (Index i = 0; i < points.cols(); ++i)
-      for (const Index j : test::rowOf(lists, i))
+      for (const Index j : rowOf(lists, i))
         expected.insert({std::pair(i, j), std::pair(j, i)});
     const NeighborGraph result =
-        nearestNeighborGraph(points, test::untidy(bruteForceNeighbors(points, 20)), k);
-    test::expectConnectedGraphOf(points, result);
+        nearestNeighborGraph(points, untidy(bruteForceNeighbors(points, 20)), k);
+    expectConnectedGraphOf(points, result);
     for (const Bridge& bridge : result.bridges)
       expected.insert({std::pair(bridge.from, bridge.to), std::pair(bridge.to, bridge.from)});
     EXPECT_EQ(edgesOf(result.graph), expected);
@@ -58,12 +52,12 @@ TEST(PaperGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
   for (Index piece = 0; piece < pieces; ++piece) {
     Positions part = randomSphere(20, static_cast<std::uint64_t>(piece));
     part.colwise() += Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
-    points = test::horizontally(points, part);
+    points = horizontally(points, part);
     for (Index i = 1; i < 20; ++i)
       parts.unite(20 * piece, 20 * piece + i);
   }
   const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 6), 6);
-  test::expectConnectedGraphOf(points, result);
+  expectConnectedGraphOf(points, result);
   ASSERT_EQ(result.bridges.size(), static_cast<std::size_t>(pieces) - 1);
   double total = 0.0;
   for (const Bridge& bridge : result.bridges) {
@@ -76,9 +70,9 @@ TEST(PaperGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
 }
 
 TEST(PaperGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
-  const Positions points = test::cubeGrid(5);  // all ties
+  const Positions points = cubeGrid(5);  // all ties
   const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 0), 25);
-  test::expectConnectedGraphOf(points, result);
+  expectConnectedGraphOf(points, result);
   EXPECT_EQ(result.graph.edgeCount(), static_cast<std::size_t>(points.cols()) - 1);
   EXPECT_EQ(result.bridges.size(), result.graph.edgeCount());
   for (const double length : result.graph.lengths)
@@ -134,7 +128,7 @@ std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Posi
 }
 
 TEST(PaperEmbedding, IsTheIterationOfFigure3) {
-  const Positions points = test::dentedCloud(300).points;
+  const Positions points = dentedCloud(300).points;
   const Graph graph = nearestGraph(points, 8);
   for (const EdgeWeights weights : kAllWeights)
     for (const double lambda : {0.5, 0.2}) {
@@ -163,7 +157,7 @@ TEST(PaperEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
   // The centroid of a cloud that is symmetric to the origin stays there, so centring and
   // Laplacian do not work against each other.
   const Positions half = randomSphere(60, 3);
-  Positions points = test::horizontally(half, -half);
+  Positions points = horizontally(half, -half);
   points.row(0) *= 1.5;
   PaperOptions options;
   options.max_iterations = 20000;
@@ -178,7 +172,7 @@ TEST(PaperEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
 /// one place and the far point the opposite one. Centring spreads the one place over the
 /// sphere again within a few steps.
 Positions sphereWithOutlier(Index n) {
-  return test::horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
+  return horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
 }
 
 TEST(PaperEmbedding, CentringUndoesAPassingCollapse) {
@@ -191,15 +185,15 @@ TEST(PaperEmbedding, CentringUndoesAPassingCollapse) {
 TEST(PaperHull, IsThatOfQhullOrWhereItLeavesPointsOutTheExactOne) {
   const Positions sphere = randomSphere(200, 1);
   const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
-  const Positions crowded = horizontally(sphere, test::cap(400, 1e-8, pole, 2));
+  const Positions crowded = horizontally(sphere, cap(400, 1e-8, pole, 2));
   EXPECT_EQ(internal::hullByQhull(sphere).cols(), 396);
   ASSERT_EQ(internal::hullByQhull(crowded).cols(), 0) << "this cap does not put qhull to the test";
   for (const Positions& points : {sphere, crowded, horizontally(sphere, sphere)}) {
     const Triangles hull = internal::paper::convexHull(points, {});
-    EXPECT_TRUE(test::isSphereOverAll(hull, static_cast<Index>(points.cols())));
-    EXPECT_EQ(test::canonical(hull), test::canonical(triangulateSphere(points)));
+    EXPECT_TRUE(isSphereOverAll(hull, static_cast<Index>(points.cols())));
+    EXPECT_EQ(canonical(hull), canonical(triangulateSphere(points)));
   }
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graphs.h"
-#include "helpers.h"
 #include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 

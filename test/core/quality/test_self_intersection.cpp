@@ -4,10 +4,7 @@
 
 #include "helpers.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
-
-#include <set>
 
 namespace spherical_param::test {
 namespace {

@@ -1,16 +1,7 @@
 #include "surface_diagnosis.h"
 
 #include "core/topology/topologies.h"
-#include "graphs.h"
-#include "helpers.h"
-#include "openings.h"
 #include "surface_scenes.h"
-
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <optional>
-#include <set>
 
 namespace spherical_param::test {
 namespace {

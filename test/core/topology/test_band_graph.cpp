@@ -4,14 +4,14 @@
 #include "open_shapes.h"
 #include "rotation_system.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::BandGraph;
 
 /// How much a sphere squeezes a cloud.
 double squeezeOf(const Positions& points) {
-  const Graph graph = test::localDelaunayGraph(points).graph;
+  const Graph graph = localDelaunayGraph(points).graph;
   const internal::NodeSizes sizes{internal::nodeSpacings(graph, 1),
                                   internal::Indexed<double>(graph.size(), 1.0)};
   internal::Indexed<Index> band_of(graph.size(), -1);
@@ -24,15 +24,15 @@ double squeezeOf(const Positions& points) {
 }
 
 TEST(BandGraph, SeesHowMuchATubeIsSqueezed) {
-  EXPECT_LT(squeezeOf(test::spiralSphere(1500)), 3.0);
-  EXPECT_LT(squeezeOf(test::randomSphere(1500, 1)), 4.0);
+  EXPECT_LT(squeezeOf(spiralSphere(1500)), 3.0);
+  EXPECT_LT(squeezeOf(randomSphere(1500, 1)), 4.0);
   // Half as long as it is from its middle to its ends: sqrt(1/2) for each radius.
-  const double step = 2.0 * test::kPi / 14;
+  const double step = 2.0 * kPi / 14;
   for (const int rings : {60, 120}) {
     const double expected = std::sqrt(0.5) * step * rings / 2.0;
-    EXPECT_NEAR(squeezeOf(test::tube(rings, 14)), expected, 0.25 * expected);
+    EXPECT_NEAR(squeezeOf(tube(rings, 14)), expected, 0.25 * expected);
   }
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -5,13 +5,11 @@
 #include "handle_shapes.h"
 #include "open_shapes.h"
 
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 Graph delaunayGraph(const Positions& points) {
-  return test::localDelaunayGraph(points).graph;
+  return localDelaunayGraph(points).graph;
 }
 
 /// The mesh of the faces of a graph, and of the other nodes.
@@ -32,11 +30,11 @@ std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
 }
 
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
-  const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
+  const Positions torus = torusCloud(40, 16, 1.0, 0.4);
   const Graph graph = delaunayGraph(torus);
   const auto cut = meshOf(torus, graph, 0);
   ASSERT_TRUE(cut);
-  EXPECT_TRUE(test::isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
+  EXPECT_TRUE(isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
   // It is cut across the tube, of 16 points, or along it, of 40.
   const auto of_cut = edgesOf(*cut);
   std::size_t lost = 0;
@@ -47,7 +45,7 @@ TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
 
 TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   // Two sheets that nearly touch, and false edges between them at a few points.
-  const Positions sphere = test::spiralSphere(1500);
+  const Positions sphere = spiralSphere(1500);
   Positions thin = sphere;
   thin.row(2) *= 0.1;
   const Graph graph = delaunayGraph(thin);
@@ -63,7 +61,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   ASSERT_GT(bridges.size(), 20U);
   const auto mesh = meshOf(thin, internal::withEdges(graph, bridges), 0);
   ASSERT_TRUE(mesh);
-  EXPECT_TRUE(test::isSphereOverAll(*mesh, 1500));
+  EXPECT_TRUE(isSphereOverAll(*mesh, 1500));
   const auto found = edgesOf(*mesh);
   std::size_t lost = 0;
   for (const auto& edge : edgesOf(*right))
@@ -74,18 +72,18 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
 TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
   // Two spheres, and a line of points that sticks out of one of them.
   Positions points(3, 605);
-  points << test::spiralSphere(300), test::spiralSphere(300).colwise() + Eigen::Vector3d(2.5, 0, 0),
+  points << spiralSphere(300), spiralSphere(300).colwise() + Eigen::Vector3d(2.5, 0, 0),
       Positions::Zero(3, 5);
   for (Eigen::Index i = 0; i < 5; ++i)
     points(1, 600 + i) = 1.2 + 0.2 * static_cast<double>(i);
   const auto mesh = meshOf(points, delaunayGraph(points), 0);
   ASSERT_TRUE(mesh);
-  EXPECT_TRUE(test::isSphereOverAll(*mesh, 605));
+  EXPECT_TRUE(isSphereOverAll(*mesh, 605));
 }
 
 TEST(FaceMesh, SaysWhatIsNoFace) {
   // The loop of 20 points and more around a hole is no face.
-  const Positions points = test::sphereWithHoles(1000, 1, 0.4);
+  const Positions points = sphereWithHoles(1000, 1, 0.4);
   const auto mesh = internal::meshFaces(points, delaunayGraph(points), 0, {});
   ASSERT_TRUE(mesh);
   ASSERT_EQ(mesh->is_filling.size(), internal::columnCount(mesh->triangles));
@@ -94,7 +92,7 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
     if (mesh->is_filling[t] != 0) {
       ++fillings;
       for (const Index v : mesh->triangles.col(t))
-        EXPECT_LT((points.col(v) - test::spiralSphere(1).col(0)).norm(), 0.6);
+        EXPECT_LT((points.col(v) - spiralSphere(1).col(0)).norm(), 0.6);
     }
   EXPECT_GT(fillings, 15);
 }
@@ -107,4 +105,4 @@ TEST(FaceMesh, IsNoneWithoutFaces) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

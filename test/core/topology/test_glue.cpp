@@ -1,12 +1,9 @@
 #include "glue.h"
 
 #include "graphs.h"
-#include "helpers.h"
 #include "sphere_mesh.h"
 
 #include <gtest/gtest.h>
-
-#include <optional>
 
 namespace spherical_param::internal {
 namespace {

@@ -7,21 +7,21 @@
 #include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::CutLoop;
 
 /// Points on a tube of radius 1 with round ends.
 Positions needle(int rings, int around) {
-  Positions points = test::tube(rings, around);
-  const double step = 2.0 * test::kPi / around;
+  Positions points = tube(rings, around);
+  const double step = 2.0 * kPi / around;
   const double end = step * (rings - 1);
   std::vector<Eigen::Vector3d> all(points.colwise().begin(), points.colwise().end());
   for (int ring = 1; ring * step < 1.4; ++ring) {
     const auto count = static_cast<int>(around * std::cos(ring * step));
     for (int a = 0; a < count; ++a) {
-      const double angle = 2.0 * test::kPi * (a + 0.5 * ring) / count;
+      const double angle = 2.0 * kPi * (a + 0.5 * ring) / count;
       const double radius = std::cos(ring * step);
       const double height = std::sin(ring * step);
       all.emplace_back(radius * std::cos(angle), radius * std::sin(angle), -height);
@@ -30,7 +30,7 @@ Positions needle(int rings, int around) {
   }
   all.emplace_back(0.0, 0.0, -1.0);
   all.emplace_back(0.0, 0.0, end + 1.0);
-  return test::positionsOf(all);
+  return positionsOf(all);
 }
 
 struct Cut {
@@ -42,7 +42,7 @@ struct Cut {
 
 Cut cutOf(const Positions& points) {
   Cut cut;
-  cut.graph = test::localDelaunayGraph(points).graph;
+  cut.graph = localDelaunayGraph(points).graph;
   const auto spacing = internal::nodeSpacings(cut.graph, 1);
   internal::RotationSystem rotation(points, cut.graph, spacing, 1);
   cut.openings = internal::findOpenings(points, cut.graph, spacing, rotation);
@@ -80,16 +80,16 @@ void expectLoopsApart(const Cut& cut) {
 }
 
 TEST(Necks, AreNoneWhereASphereHasRoom) {
-  EXPECT_TRUE(cutOf(test::spiralSphere(1500)).necks.empty());
-  EXPECT_TRUE(cutOf(test::randomSphere(1500, 1)).necks.empty());
-  EXPECT_TRUE(cutOf(test::cubeGrid(14)).necks.empty());
-  EXPECT_TRUE(cutOf(test::hemisphere(800)).necks.empty());
+  EXPECT_TRUE(cutOf(spiralSphere(1500)).necks.empty());
+  EXPECT_TRUE(cutOf(randomSphere(1500, 1)).necks.empty());
+  EXPECT_TRUE(cutOf(cubeGrid(14)).necks.empty());
+  EXPECT_TRUE(cutOf(hemisphere(800)).necks.empty());
   EXPECT_TRUE(cutOf(needle(20, 16)).necks.empty());
 }
 
 TEST(Necks, DivideLongTubes) {
   for (const Positions& points :
-       {needle(120, 12), test::withNoise(needle(120, 12), 0.05, 1), test::tube(120, 12)}) {
+       {needle(120, 12), withNoise(needle(120, 12), 0.05, 1), tube(120, 12)}) {
     const Cut cut = cutOf(points);
     EXPECT_GE(cut.necks.size(), 3U);
     EXPECT_EQ(cut.spheres, cut.necks.size() + 1);
@@ -108,4 +108,4 @@ TEST(Necks, MakeMeshesOfLongTubesSound) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,21 +1,14 @@
 #include "graphs.h"
-#include "openings.h"
 
 #include "core/graph/graph_helpers.h"
 #include "open_shapes.h"
 #include "topologies.h"
 
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
-using test::sphereWithHoles;
-using test::spiralSphere;
-using test::tube;
-
 Graph graphOf(const Positions& points) {
-  return test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
+  return test::graphOf(points, bruteForceNeighbors(points, 24)).graph;
 }
 
 std::vector<Opening> openingsOf(const Positions& points) {
@@ -24,8 +17,8 @@ std::vector<Opening> openingsOf(const Positions& points) {
 
 TEST(Openings, AreNoneOfClosedSurfacesHoweverTheyAreSampled) {
   EXPECT_TRUE(openingsOf(spiralSphere(1500)).empty());
-  EXPECT_TRUE(openingsOf(test::randomSphere(1500, 1)).empty());
-  EXPECT_TRUE(openingsOf(test::cubeGrid(14)).empty());
+  EXPECT_TRUE(openingsOf(randomSphere(1500, 1)).empty());
+  EXPECT_TRUE(openingsOf(cubeGrid(14)).empty());
 }
 
 TEST(Openings, HaveTheSizesOfTheHole) {
@@ -33,10 +26,10 @@ TEST(Openings, HaveTheSizesOfTheHole) {
   ASSERT_EQ(openings.size(), 2U);
   for (const Opening& opening : openings) {
     EXPECT_EQ(opening.loop.size(), 40U);
-    EXPECT_NEAR(opening.boundary_length, 2.0 * test::kPi, 0.01);
-    EXPECT_NEAR(opening.area, test::kPi, 0.02);
+    EXPECT_NEAR(opening.boundary_length, 2.0 * kPi, 0.01);
+    EXPECT_NEAR(opening.area, kPi, 0.02);
     EXPECT_NEAR(opening.width, 2.0, 0.02);
-    EXPECT_NEAR(opening.spacing, 2.0 * test::kPi / 40, 0.03);
+    EXPECT_NEAR(opening.spacing, 2.0 * kPi / 40, 0.03);
     EXPECT_LT(opening.center.head<2>().norm(), 1e-9);
     EXPECT_EQ(opening.certainty, 1.0);
     EXPECT_TRUE(opening.is_flat);
@@ -52,7 +45,7 @@ Positions hexagonalGrid(Index columns, const std::function<bool(Index)>& is_kept
     if (is_kept(i))
       points.emplace_back(i % columns + 0.5 * (i / columns % 2), std::sqrt(0.75) * (i / columns),
                           0.0);
-  return test::positionsOf(points);
+  return positionsOf(points);
 }
 
 TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
@@ -70,7 +63,7 @@ TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
 
 TEST(Openings, ThatCurlAreAsWideAsTheLeastSurfaceOverThem) {
   // Half of a tennis ball: the vector area of its rim is 0.
-  const Positions half = test::pointsWhere(test::spiralSphere(4000), [](const Eigen::Vector3d& p) {
+  const Positions half = pointsWhere(spiralSphere(4000), [](const Eigen::Vector3d& p) {
     return p.x() * p.x() - p.y() * p.y() + 0.3 * p.z() > 0.0;
   });
   const std::vector<Opening> openings = openingsOf(half);
@@ -110,4 +103,4 @@ TEST(Openings, CountFromThreeSpacingsOn) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -2,12 +2,11 @@
 
 #include "graphs.h"
 #include "handles.h"
-#include "helpers.h"
 #include "neighbor_search.h"
 #include "openings.h"
 #include "rotation_system.h"
 
-#include <optional>
+#include <gtest/gtest.h>
 
 /// What is known of a cloud before it is meshed.
 namespace spherical_param::test {

@@ -3,18 +3,10 @@
 #include "spherical_param/mesh_topology.h"
 #include "triangulations.h"
 
-#include <set>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 using internal::SphereDelaunay;
-using test::cap;
-using test::expectSound;
-using test::horizontally;
-using test::isSphereOverAll;
-using test::latitude;
-using test::randomSphere;
 
 SphereDelaunay triangulate(const Positions& directions) {
   return internal::incrementalDelaunay(directions);
@@ -54,7 +46,7 @@ Positions limbs(Index n, std::uint64_t seed) {
     const Eigen::Vector3d tip = tips.col(i % 4);
     const Eigen::Vector3d east = tip.unitOrthogonal();
     const double radius = std::exp(-7.0 * uniform(random));
-    const double angle = 2.0 * test::kPi * uniform(random);
+    const double angle = 2.0 * kPi * uniform(random);
     points.col(i) =
         (tip + radius * (std::cos(angle) * east + std::sin(angle) * tip.cross(east))).normalized();
   }
@@ -74,7 +66,7 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
         if (reference.cols() == 0)
           continue;
         ++compared;
-        ASSERT_EQ(test::canonical(result.triangles), test::canonical(reference))
+        ASSERT_EQ(canonical(result.triangles), canonical(reference))
             << "n = " << n << ", seed " << seed;
       }
   EXPECT_GT(compared, 400);
@@ -140,7 +132,7 @@ TEST(IncrementalDelaunay, IsThatOfIntegerArithmeticInClustersOf1em13) {
       flipOrientation(result.triangles);
     int flat = 0;
     int with_area = 0;
-    for (const auto& t : test::canonical(result.triangles)) {
+    for (const auto& t : canonical(result.triangles)) {
       if (std::max({t[0], t[1], t[2]}) == opposite)
         continue;
       const auto a = static_cast<std::size_t>(t[0]);
@@ -164,7 +156,7 @@ TEST(IncrementalDelaunay, EveryPointIsAVertexWhereManyAreInOnePlaneOrPlace) {
   std::vector<Positions> all{latitude(300, 0.0), latitude(10000, 0.0),
                              horizontally(latitude(500, 0.6), latitude(500, -0.6))};
   for (const int m : {2, 3, 6, 11})
-    all.push_back((test::cubeGrid(m).array() - 0.5).matrix().colwise().normalized());
+    all.push_back((cubeGrid(m).array() - 0.5).matrix().colwise().normalized());
   for (const double radius : {0.05, 1e-3, 1e-7, 1e-9, 1e-12, 1e-15}) {
     const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
     const Positions one = cap(1500, radius, pole, 2);
@@ -180,8 +172,8 @@ TEST(IncrementalDelaunay, EveryPointIsAVertexWhereManyAreInOnePlaneOrPlace) {
   for (const Positions& points : all)
     expectSound(points, triangulate(points));
   // A prism of two regular n-gons: nothing else is convex.
-  EXPECT_NEAR(test::volumeOf(all[2], triangulate(all[2]).triangles),
-              1.2 * 0.5 * 500 * 0.64 * std::sin(2.0 * test::kPi / 500), 1e-9);
+  EXPECT_NEAR(volumeOf(all[2], triangulate(all[2]).triangles),
+              1.2 * 0.5 * 500 * 0.64 * std::sin(2.0 * kPi / 500), 1e-9);
   // Vertices at one place do not crowd round one of them.
   const Positions crowded = horizontally(some, place);
   const SphereDelaunay result = triangulate(crowded);
@@ -196,7 +188,7 @@ TEST(IncrementalDelaunay, CirclesThroughThePoleAreTriangulatedWhole) {
     for (const double tilt : {0.0, 0.4}) {
       Positions points(3, n);
       for (Index i = 0; i < n; ++i) {
-        const double angle = 2.0 * test::kPi * i / n;
+        const double angle = 2.0 * kPi * i / n;
         points.col(i) << std::sin(angle) * std::cos(tilt), std::sin(tilt),
             std::cos(angle) * std::cos(tilt);
       }
@@ -234,7 +226,7 @@ TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
       ASSERT_TRUE(isSphereOverAll(result.triangles, n)) << n << " points, way " << way;
       ASSERT_EQ(result.coincident, n - static_cast<Index>(used.size()));
       if (used.size() == 6) {
-        ASSERT_GT(test::volumeOf(points, result.triangles), 0.0);
+        ASSERT_GT(volumeOf(points, result.triangles), 0.0);
       }
     }
   }
@@ -272,4 +264,4 @@ TEST(IncrementalDelaunay, CrowdsAreTriangulatedInTime) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test
