@@ -7,18 +7,18 @@
 /// Neighbour graphs for tests of the core's stages.
 namespace spherical_param::test {
 
-inline internal::Stars starsOf(const Positions& points, const NeighborLists& lists,
-                               const NeighborSearch& search = {}, const Execution& execution = {}) {
-  return internal::findStars(points, {lists, search}, execution);
+inline Stars starsOf(const Positions& points, const NeighborLists& lists,
+                     const NeighborSearch& search = {}, const Execution& execution = {}) {
+  return findStars(points, {lists, search}, execution);
 }
 
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
                              const NeighborSearch& search = {}, const Execution& execution = {}) {
-  const internal::Stars stars = starsOf(points, lists, search, execution);
-  const Graph agreed = internal::agreedGraph(points, stars, execution);
-  NeighborGraph result = internal::buildLocalDelaunayGraph(points, stars, agreed, execution);
+  const Stars stars = starsOf(points, lists, search, execution);
+  const Graph agreed = agreedGraph(points, stars, execution);
+  NeighborGraph result = buildLocalDelaunayGraph(points, stars, agreed, execution);
   if (points.cols() > 0)
-    result.stray_points = internal::strayPoints(points, agreed, stars);
+    result.stray_points = strayPoints(points, agreed, stars);
   return result;
 }
 

@@ -22,9 +22,13 @@
 #include <utility>
 #include <vector>
 
+namespace spherical_param::internal {}
+
 /// Clouds, brute-force oracles and checks that the tests share. Everything is recomputed here from
 /// the output alone, without the code under test.
 namespace spherical_param::test {
+
+using namespace internal;  // tests see the inside
 
 constexpr double kPi = 3.14159265358979323846;
 

@@ -5,7 +5,6 @@
 #include "core/reconstructions.h"
 #include "handle_shapes.h"
 #include "map/blobs.h"
-#include "open_shapes.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"
@@ -13,11 +12,7 @@
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 
-#include <gtest/gtest.h>
-
 #include <iterator>
-#include <optional>
-#include <string>
 #include <type_traits>
 
 namespace spherical_param::test {

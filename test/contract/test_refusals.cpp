@@ -10,10 +10,6 @@
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
 #include <type_traits>
 
 namespace spherical_param::test {

@@ -10,14 +10,13 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   Positions points = spiralSphere(600);
   const Triangles triangles = triangulateSphere(points);
   points.col(200) *= -1.5;
-  internal::MeshedCloud mesh;
+  MeshedCloud mesh;
   mesh.optimization.triangles = triangles;
   mesh.optimization.intersecting.pairs = findSelfIntersections(points, triangles);
   ASSERT_FALSE(mesh.optimization.intersecting.pairs.empty());
   const auto cleaned = [&](const Options& options) {
-    internal::OpenMesh open{triangles,
-                            internal::Indexed<std::uint8_t>(internal::columnCount(triangles), 0)};
-    const auto left_out = internal::cleanMesh(points, false, options, {}, mesh, open);
+    OpenMesh open{triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
+    const auto left_out = cleanMesh(points, false, options, {}, mesh, open);
     const Triangles surface = internal::surfaceOf(open);
     EXPECT_EQ(findSelfIntersections(points, surface).empty(), left_out.has_value());
     EXPECT_TRUE(left_out || surface == triangles);

@@ -121,8 +121,8 @@ Surface onNodes() {
 }
 
 /// Node i is vertex {2, 0, 3, 1}[i], and scaled by 2^-3.
-internal::OrderedPoints reorderedNodes() {
-  internal::OrderedPoints nodes;
+OrderedPoints reorderedNodes() {
+  OrderedPoints nodes;
   nodes.exponent = 3;
   nodes.vertex_of_node = {2, 0, 3, 1};
   nodes.distinct.vertex_of_input = {0, 1, 2, 3, 3};
@@ -132,8 +132,8 @@ internal::OrderedPoints reorderedNodes() {
 
 TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
   Surface result = onNodes();
-  internal::OrderedPoints nodes = reorderedNodes();
-  internal::toInput(nodes, result);
+  OrderedPoints nodes = reorderedNodes();
+  toInput(nodes, result);
   std::size_t quantities = 0;
   visitQuantities(result, [&](const char* name, double number, int power) {
     EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
@@ -146,8 +146,8 @@ TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
 
 TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
   Surface result = onNodes();
-  internal::OrderedPoints nodes = reorderedNodes();
-  internal::toInput(nodes, result);
+  OrderedPoints nodes = reorderedNodes();
+  toInput(nodes, result);
   using Indices = std::vector<Index>;
   EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
   EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));

@@ -11,8 +11,8 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   // Input 4 repeats input 1, whose node is in no triangle.
   Positions points =
       positionsOf({{0, 0, 0}, {0.4, 0.3, 0.2}, {1, 0, 0}, {0, 1, 0}, {0.4, 0.3, 0.2}, {0, 0, 1}});
-  internal::OrderedPoints nodes = internal::orderPoints(points, 1);
-  const auto node_of = internal::nodesOfInput(nodes);
+  OrderedPoints nodes = orderPoints(points, 1);
+  const auto node_of = nodesOfInput(nodes);
   Surface surface;
   surface.triangles.resize(3, 4);
   surface.triangles << node_of[0], node_of[0], node_of[0], node_of[2], node_of[3], node_of[2],
@@ -23,7 +23,7 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   surface.history.frames[0].sphere = nodes.points(Eigen::all, surface.history.vertices);
   surface.outliers = {node_of[1], node_of[5]};
   surface.topology.unused_vertices = {node_of[1]};
-  internal::toInput(nodes, surface);
+  toInput(nodes, surface);
   EXPECT_EQ(surface.vertex_of_input, (std::vector<Index>{0, -1, 1, 2, -1, 3}));
   EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{0, 2, 3, 5}));
   EXPECT_EQ(surface.sphere.cols(), 4);
@@ -34,7 +34,7 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   EXPECT_TRUE(surface.topology.unused_vertices.empty());
 
   std::vector<Index> unmeshed;
-  internal::toCloud({10, 11, 12, 13, 14, 15}, surface, unmeshed);
+  toCloud({10, 11, 12, 13, 14, 15}, surface, unmeshed);
   EXPECT_EQ(unmeshed, (std::vector<Index>{11, 14}));
   EXPECT_EQ(surface.inputs, (std::vector<Index>{10, 12, 13, 15}));
   EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{10, 12, 13, 15}));

@@ -22,7 +22,7 @@ TEST(StageClock, NestedProgressIsThatOfTheStageAndItsPart) {
                       " " + std::to_string(progress.part) + "/" + std::to_string(progress.parts));
     return true;
   };
-  internal::StageClock clock(user);
+  StageClock clock(user);
   EXPECT_EQ(clock.execution().threads, 5);
   EXPECT_FALSE(clock.execution().time_limit.has_value());
   clock.begin("outliers");
@@ -39,12 +39,12 @@ TEST(StageClock, NestedProgressIsThatOfTheStageAndItsPart) {
 
 TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   Execution user;
-  internal::StageClock unlimited(user);
+  StageClock unlimited(user);
   unlimited.beginPart(0, 2, 0.5, 0.5);
   EXPECT_FALSE(unlimited.remaining().has_value());
   EXPECT_TRUE(unlimited.hasTimeAgain());
   user.time_limit = 1e6;
-  internal::StageClock clock(user);
+  StageClock clock(user);
   EXPECT_NEAR(*clock.remaining(), 1e6, 1e3);
   for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its share
     clock.beginPart(0, 3, fraction, 0.1);
@@ -52,9 +52,9 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
     EXPECT_TRUE(clock.hasTimeAgain());
   }
   user.time_limit = 0.0;
-  EXPECT_FALSE(internal::StageClock(user).hasTimeAgain());
+  EXPECT_FALSE(StageClock(user).hasTimeAgain());
   user.time_limit = 0.4;
-  internal::StageClock half(user);
+  StageClock half(user);
   EXPECT_TRUE(half.hasTimeAgain());
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   EXPECT_FALSE(half.hasTimeAgain());
@@ -64,20 +64,20 @@ TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
   for (const double limit : {0.0, 1e-9}) {
     Execution user;
     user.time_limit = limit;
-    internal::StageClock clock(user);
+    StageClock clock(user);
     clock.begin("graph");  // small clouds have their mesh
     std::this_thread::sleep_for(std::chrono::milliseconds(160));
     const auto ends = [&](const char* stage) {
       try {
         clock.begin(stage);
         return false;
-      } catch (const internal::OutOfTime&) {
+      } catch (const OutOfTime&) {
         return true;
       }
     };
     EXPECT_EQ(ends("embedding"), limit > 0.0);
     EXPECT_NO_THROW(clock.take());
-    internal::StageClock with_mesh(user);
+    StageClock with_mesh(user);
     with_mesh.begin("triangulation");
     with_mesh.noteMesh();
     std::this_thread::sleep_for(std::chrono::milliseconds(160));

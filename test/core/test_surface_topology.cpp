@@ -46,14 +46,13 @@ TEST(SurfaceTopology, GluedMeshesHaveTheirLoopsAndAreNotCutByThem) {
   for (const Positions& points :
        {torusCloud(40, 16, 1.0, 0.4), doubleTorus(0.12), plateWithHoles(0.12)}) {
     const Topology of(points);
-    const std::vector<internal::CutLoop>& loops = of.handles.loops;
-    const auto mesh = internal::meshGluedSpheres(
-        of.graph.size(), internal::cutAlong(of.points, of.graph, of.rotation, loops), of.openings,
-        {}, {});
+    const std::vector<CutLoop>& loops = of.handles.loops;
+    const auto mesh = meshGluedSpheres(
+        of.graph.size(), cutAlong(of.points, of.graph, of.rotation, loops), of.openings, {}, {});
     ASSERT_TRUE(mesh);
     EXPECT_TRUE(isSurfaceOverAll(mesh->triangles, static_cast<Index>(of.graph.size()),
                                  static_cast<Index>(loops.size())));
-    for (const internal::CutLoop& loop : loops)
+    for (const CutLoop& loop : loops)
       EXPECT_TRUE(staysWhole(mesh->triangles, loop.nodes));
   }
 }

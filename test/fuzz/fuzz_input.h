@@ -1,23 +1,12 @@
 #pragma once
 
 #include "guarantees.h"
-#include "helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/execution.h"
-#include "spherical_param/types.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <limits>
-#include <string>
-#include <thread>
 
 /// What the fuzzers of the core share: points, lists and numbers from bytes, and how calls end.
 namespace fuzz {

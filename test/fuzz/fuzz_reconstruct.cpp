@@ -1,15 +1,6 @@
 // reconstruct() with everything made of bytes: points, searches, options, callbacks.
 
 #include "fuzz_input.h"
-#include "spherical_param/reconstruct.h"
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
 
 namespace {
 

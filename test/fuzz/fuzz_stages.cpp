@@ -13,20 +13,8 @@
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace fuzz {
 namespace {

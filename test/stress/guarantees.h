@@ -2,27 +2,15 @@
 
 #include "helpers.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/types.h"
 
-#include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <string>
 #include <tuple>
-#include <vector>
 
 /// What reconstruct() guarantees, decided in exact arithmetic and without the library.
 namespace stress {
 
-using spherical_param::Index;
-using spherical_param::Positions;
-using spherical_param::Triangles;
+using namespace spherical_param;
 
 using Place = std::tuple<double, double, double>;
 
@@ -85,14 +73,13 @@ inline bool canBeMeshed(const Positions& points) {
 }
 
 /// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh.
-inline bool mustBeMeshed(const Positions& points, const spherical_param::Options& options) {
-  return options.outliers == spherical_param::OutlierMode::None &&
-         options.parts == spherical_param::PartsMode::All && canBeMeshed(points);
+inline bool mustBeMeshed(const Positions& points, const Options& options) {
+  return options.outliers == OutlierMode::None && options.parts == PartsMode::All &&
+         canBeMeshed(points);
 }
 
 /// Whether lists are as types.h says: `count` lists of indices in [0, n).
-inline bool areLists(const spherical_param::NeighborLists& lists, std::size_t count,
-                     std::size_t n) {
+inline bool areLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
   const auto& [offsets, indices] = lists;
   return offsets.size() == count + 1 && offsets.front() == 0 && offsets.back() == indices.size() &&
          std::is_sorted(offsets.begin(), offsets.end()) &&
@@ -121,8 +108,7 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
 }
 
 /// What a surface of some points of a cloud lacks of what is guaranteed; empty if it lacks nothing.
-inline std::string faultOf(const Positions& cloud, const spherical_param::Options& options,
-                           const spherical_param::Surface& result) {
+inline std::string faultOf(const Positions& cloud, const Options& options, const Surface& result) {
   const Positions points = cloud(Eigen::all, result.inputs);
   const std::size_t n = result.inputs.size();
   const std::map<Place, Index> first = firstAtPlaces(points);
@@ -140,16 +126,16 @@ inline std::string faultOf(const Positions& cloud, const spherical_param::Option
   }
   const auto count = static_cast<Eigen::Index>(v);
   const auto genus = static_cast<Index>(result.genus());
-  if (!spherical_param::test::isSurfaceOverAll(result.triangles, static_cast<Index>(v), genus))
+  if (!test::isSurfaceOverAll(result.triangles, static_cast<Index>(v), genus))
     return "the mesh is not a surface with its handles over all points";
   if (!result.topology.isSurface() || !result.topology.closed || result.topology.genus != genus)
     return "the result's own check says that the mesh is not such a surface";
-  if (genus > 0 && options.handles == spherical_param::HandleMode::None)
+  if (genus > 0 && options.handles == HandleMode::None)
     return "the mesh has handles that were to be cut";
   if (facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
     return "the triangles face inward";
   const bool has_sphere = result.sphere.cols() > 0;
-  const bool is_one = options.handles == spherical_param::HandleMode::None;
+  const bool is_one = options.handles == HandleMode::None;
   if ((has_sphere ? genus > 0 || result.sphere.cols() != count : genus == 0 && is_one) ||
       !areUnitVectors(result.sphere))
     return "the embedding is not of unit vectors, or not of a sphere";
@@ -161,10 +147,9 @@ inline std::string faultOf(const Positions& cloud, const spherical_param::Option
 }
 
 /// What the lists of a result lack; empty if they lack nothing.
-inline std::string faultOfLists(const Positions& points, const spherical_param::Options& options,
-                                const spherical_param::Result& result) {
-  using spherical_param::PartsMode;
-  const spherical_param::LeftOut& left_out = result.left_out;
+inline std::string faultOfLists(const Positions& points, const Options& options,
+                                const Result& result) {
+  const LeftOut& left_out = result.left_out;
   std::vector<int> times(static_cast<std::size_t>(points.cols()), 0);
   bool is_ascending = true;
   const auto count = [&](const std::vector<Index>& list) {
@@ -172,7 +157,7 @@ inline std::string faultOfLists(const Positions& points, const spherical_param::
     for (const Index i : list)
       ++times.at(static_cast<std::size_t>(i));
   };
-  for (const spherical_param::Surface& surface : result.surfaces)
+  for (const Surface& surface : result.surfaces)
     count(surface.inputs);
   for (const auto& list :
        {left_out.not_finite, left_out.outliers, left_out.other_parts, left_out.unmeshed})
@@ -182,7 +167,7 @@ inline std::string faultOfLists(const Positions& points, const spherical_param::
   if (static_cast<Eigen::Index>(left_out.not_finite.size()) !=
       points.cols() - finiteOf(points).cols())
     return "not all points that are not finite are listed";
-  if (options.outliers == spherical_param::OutlierMode::None && !left_out.outliers.empty())
+  if (options.outliers == OutlierMode::None && !left_out.outliers.empty())
     return "outliers that were not to be looked for";
   if (options.parts == PartsMode::All && !left_out.other_parts.empty())
     return "other parts of a whole cloud";
@@ -198,14 +183,14 @@ inline std::string faultOfLists(const Positions& points, const spherical_param::
 }
 
 /// The arrays and numbers of a result bit by bit, to compare results.
-inline std::string bytesOf(const spherical_param::Result& result) {
+inline std::string bytesOf(const Result& result) {
   std::string bytes;
   const auto add = [&bytes](const auto& array) {
     const auto count = static_cast<std::size_t>(array.size());
     bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
     bytes.append(reinterpret_cast<const char*>(array.data()), count * sizeof *array.data());
   };
-  for (const spherical_param::Surface& surface : result.surfaces) {
+  for (const Surface& surface : result.surfaces) {
     add(surface.triangles);
     add(surface.sphere);
     add(surface.smoothed);
@@ -222,7 +207,7 @@ inline std::string bytesOf(const spherical_param::Result& result) {
   add(result.left_out.other_parts);
   add(result.left_out.unmeshed);
   add(result.verdict);
-  for (const spherical_param::Finding& finding : result.findings)
+  for (const Finding& finding : result.findings)
     add(finding.text);
   return bytes;
 }

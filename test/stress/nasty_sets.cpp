@@ -3,21 +3,12 @@
 #include "guarantees.h"
 #include "spherical_param/errors.h"
 
-#include <Eigen/Geometry>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <exception>
-#include <functional>
-#include <limits>
-#include <vector>
 
 namespace stress {
 namespace {
 
 using Eigen::Vector3d;
-using spherical_param::Positions;
 using Points = std::vector<Vector3d>;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -272,8 +263,7 @@ void treat(Random& random, Points& points) {
 
 }  // namespace
 
-spherical_param::Options someOptions(Random& random, bool is_large) {
-  using namespace spherical_param;
+Options someOptions(Random& random, bool is_large) {
   const auto one = [&random](int count) { return random.integer(0, count - 1); };
   Options options;
   options.topology = TopologyMode::Sphere;
@@ -309,20 +299,19 @@ NastySet makeNastySet(std::uint64_t seed) {
   return set;
 }
 
-Answer answerTo(const NastySet& set, int threads,
-                const spherical_param::NeighborSearchFactory& search_of) {
+Answer answerTo(const NastySet& set, int threads, const NeighborSearchFactory& search_of) {
   Answer answer;
-  spherical_param::Options options = set.options;
+  Options options = set.options;
   options.threads = threads;
   try {
     answer.result = reconstruct(set.points, options, search_of);
     answer.bytes = bytesOf(answer.result);
     answer.fault = canBeMeshed(set.points) ? faultOfLists(set.points, options, answer.result)
                                            : "points that cannot be meshed are accepted";
-    for (const spherical_param::Surface& surface : answer.result.surfaces)
+    for (const Surface& surface : answer.result.surfaces)
       if (answer.fault.empty())
         answer.fault = faultOf(set.points, options, surface);
-  } catch (const spherical_param::InvalidInput& error) {
+  } catch (const InvalidInput& error) {
     answer.bytes = error.what();
     if (mustBeMeshed(set.points, options))
       answer.fault = "rejected: " + answer.bytes;

@@ -3,19 +3,10 @@
 //   stress_shapes [--quick] [--seed N]
 
 #include "guarantees.h"
-#include "helpers.h"
 #include "nasty_sets.h"
-#include "random.h"
 #include "stress.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <string>
-#include <thread>
-#include <utility>
 
 namespace {
 

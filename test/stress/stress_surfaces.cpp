@@ -5,22 +5,10 @@
 //   stress_surfaces [--quick] [--seed N]
 
 #include "guarantees.h"
-#include "helpers.h"
 #include "open_shapes.h"
 #include "scan_shapes.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/reconstruct.h"
 #include "stress.h"
-
-#include <Eigen/Geometry>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <map>
-#include <string>
-#include <vector>
 
 namespace {
 

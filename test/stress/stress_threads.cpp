@@ -4,17 +4,8 @@
 //   stress_threads [--quick] [--seed N]
 
 #include "guarantees.h"
-#include "helpers.h"
 #include "nasty_sets.h"
-#include "spherical_param/reconstruct.h"
 #include "stress.h"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <string>
-#include <vector>
 
 namespace {
 

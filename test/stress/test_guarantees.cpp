@@ -6,10 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstddef>
 #include <cstdlib>
 #include <new>
-#include <random>
 
 namespace {
 

@@ -12,10 +12,6 @@
 /// A surface and short calls for the tests of the multilevel embedding and its parts.
 namespace spherical_param::test {
 
-using internal::buildGraphHierarchy;
-using internal::EmbeddingEnergy;
-using internal::GraphHierarchy;
-
 /// An ellipsoid with dents and its true edges.
 struct Cloud {
   Positions points;

@@ -8,7 +8,7 @@ namespace {
 
 TEST(EmbeddingHistory, KeepsAtMostTheLimitAndEveryLevelFromTheStartToTheEnd) {
   const Graph graph = dentedCloud(3000).graph;
-  const auto hierarchy = internal::buildGraphHierarchy(graph, 1, 200);
+  const auto hierarchy = buildGraphHierarchy(graph, 1, 200);
   Setting options;
   const Positions expected = embedByLevels(graph, hierarchy, options).directions;
   for (const auto& [vertices, most] : std::vector<std::pair<Index, int>>{
@@ -35,11 +35,11 @@ TEST(EmbeddingHistory, KeepsAtMostTheLimitAndEveryLevelFromTheStartToTheEnd) {
 }
 
 TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
-  const Positions sphere = internal::orderPoints(randomSphere(6000, 3), 1).points;
+  const Positions sphere = orderPoints(randomSphere(6000, 3), 1).points;
   for (const Index vertices : {400, 900, 1500}) {
     Setting options;
     options.history_vertices = vertices;
-    const EmbeddingHistory history = internal::EmbeddingRecorder(6000, options).take();
+    const EmbeddingHistory history = EmbeddingRecorder(6000, options).take();
     // No place of the sphere is further from the next node than some of their even distances.
     const double even = std::sqrt(4.0 * kPi / static_cast<double>(history.vertices.size()));
     for (Index i = 0; i < 6000; ++i)

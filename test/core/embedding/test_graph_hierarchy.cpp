@@ -8,10 +8,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::buildGraphHierarchy;
-using internal::GraphHierarchy;
-using internal::HierarchyLevel;
-
 Graph sphereGraph(const Positions& points) {
   return graphOfMesh(points, triangulateSphere(points));
 }

@@ -2,7 +2,7 @@
 
 #include "graph_helpers.h"
 
-namespace spherical_param::internal {
+namespace spherical_param::test {
 namespace {
 
 /// Points with a random tree as their graph, and some more edges.
@@ -19,7 +19,7 @@ Graph randomGraph(Index n, int extra, std::mt19937_64& random) {
     if (i != j)
       edges.emplace_back(i, j);
   }
-  return test::unitGraph(n, edges);
+  return unitGraph(n, edges);
 }
 
 TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
@@ -27,14 +27,14 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
   int dangling = 0;
   for (int round = 0; round < 300; ++round) {
     const Index n = 5 + round % 12;
-    const Positions points = test::randomSphere(n, static_cast<std::uint64_t>(round));
+    const Positions points = randomSphere(n, static_cast<std::uint64_t>(round));
     Graph graph = randomGraph(n, round % 14, random);
-    ASSERT_EQ(test::countReachable(graph), n);
-    const bool had_cut_node = test::hasCutNode(graph);
+    ASSERT_EQ(countReachable(graph), n);
+    const bool had_cut_node = hasCutNode(graph);
     dangling += had_cut_node ? 1 : 0;
     const std::vector<Bridge> bridges = articulationBridges(points, graph, 2);
     EXPECT_EQ(bridges.empty(), !had_cut_node);
-    const test::Edges before = test::edgesOf(graph);
+    const Edges before = edgesOf(graph);
     for (const Bridge& bridge : bridges) {
       EXPECT_EQ(before.count({bridge.from, bridge.to}), 0U);
       EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
@@ -42,7 +42,7 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
     // Of parts in a chain the ends are tied at first.
     for (Index k = 0; k < n; ++k)
       graph = withEdges(graph, articulationBridges(points, graph, 2));
-    EXPECT_FALSE(test::hasCutNode(graph));
+    EXPECT_FALSE(hasCutNode(graph));
   }
   EXPECT_GT(dangling, 50);
   EXPECT_LT(dangling, 280);
@@ -52,13 +52,13 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
   // Node 1 is in both parts; one of them has the nodes from 2 up to `end`.
   for (const Index end : {12, 30}) {
     const auto is_inner = [&](Index i) { return i >= 2 && i < end; };
-    const Positions points = test::randomSphere(40, 2);
+    const Positions points = randomSphere(40, 2);
     std::vector<std::pair<Index, Index>> edges;
     for (Index i = 0; i < 40; ++i)
       for (Index j = i + 1; j < 40; ++j)
         if (i == 1 || j == 1 || is_inner(i) == is_inner(j))
           edges.emplace_back(i, j);
-    const std::vector<Bridge> bridges = articulationBridges(points, test::unitGraph(40, edges), 3);
+    const std::vector<Bridge> bridges = articulationBridges(points, unitGraph(40, edges), 3);
     ASSERT_EQ(bridges.size(), 3U);
     std::set<Index> taken{1};
     for (const Bridge& bridge : bridges) {
@@ -83,4 +83,4 @@ TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {
 }
 
 }  // namespace
-}  // namespace spherical_param::internal
+}  // namespace spherical_param::test

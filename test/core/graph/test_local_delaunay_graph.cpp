@@ -15,18 +15,18 @@ NeighborGraph build(const Positions& points, int k = 12) {
 }
 
 /// Points with a tangent plane but without a certified cell.
-Index countUncertified(const internal::Stars& stars) {
+Index countUncertified(const Stars& stars) {
   return static_cast<Index>(
       std::count_if(stars.kind.begin(), stars.kind.end(),
                     [](const auto& kind) { return kind.tangent_plane && kind.wants_more; }));
 }
 
-Index countWithoutPlane(const internal::Stars& stars) {
+Index countWithoutPlane(const Stars& stars) {
   return static_cast<Index>(std::count_if(stars.kind.begin(), stars.kind.end(),
                                           [](const auto& kind) { return !kind.tangent_plane; }));
 }
 
-internal::Stars starsOf(const Positions& points, int k = 12) {
+Stars starsOf(const Positions& points, int k = 12) {
   return test::starsOf(points, bruteForceNeighbors(points, k), bruteForceSearch(points));
 }
 
@@ -123,11 +123,11 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
     return result;
   };
   std::vector<std::pair<std::vector<Index>, int>> asked;
-  const internal::Stars stars = test::starsOf(points, bruteForceNeighbors(points, 12),
-                                              [&](const std::vector<Index>& some, int count) {
-                                                asked.emplace_back(some, count);
-                                                return bruteForceSearch(points)(some, count);
-                                              });
+  const Stars stars = test::starsOf(points, bruteForceNeighbors(points, 12),
+                                    [&](const std::vector<Index>& some, int count) {
+                                      asked.emplace_back(some, count);
+                                      return bruteForceSearch(points)(some, count);
+                                    });
   std::vector<std::pair<std::vector<Index>, int>> expected;
   for (const auto& [known, count] : {std::pair(12, 24), std::pair(24, 32)})
     if (!uncertified(known).empty())
@@ -191,7 +191,7 @@ TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
     // Ties, too few points, and lists that are too short.
     const Positions points = seed == 0 ? cubeGrid(2) : randomSphere(seed > 30 ? 12 : 9, seed);
     const NeighborLists lists = bruteForceNeighbors(points, 8);
-    const internal::Stars stars = test::starsOf(points, lists);
+    const Stars stars = test::starsOf(points, lists);
     EXPECT_EQ(countWithoutPlane(stars), points.cols());
     const NeighborGraph result = graphOf(points, lists);
     const Edges expected = gabrielGraph(points, lists);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param::internal {
+namespace spherical_param::test {
 namespace {
 
 /// Distinct points by a table, in the order that the curve has for them alone.
@@ -44,16 +44,16 @@ Positions crowd() {
 
 TEST(OrderedPoints, AreTheDistinctPointsAlongTheCurve) {
   for (const Index n : {1, 2, 100, 3000})
-    expectDistinctPointsAlongTheCurve(7.0 * test::randomSphere(n, 1));
-  expectDistinctPointsAlongTheCurve((3.0 * test::randomSphere(2000, 3)).array().round());
-  expectDistinctPointsAlongTheCurve(test::randomSphere(4, 1).replicate(1, 500));
+    expectDistinctPointsAlongTheCurve(7.0 * randomSphere(n, 1));
+  expectDistinctPointsAlongTheCurve((3.0 * randomSphere(2000, 3)).array().round());
+  expectDistinctPointsAlongTheCurve(randomSphere(4, 1).replicate(1, 500));
   expectDistinctPointsAlongTheCurve(crowd());
   EXPECT_EQ(orderPoints(crowd(), 1).input_of_node.size(), 902U);
   EXPECT_TRUE(orderPoints(Positions(3, 0), 1).input_of_node.empty());
 }
 
 TEST(OrderedPoints, AreOfExtentOneAtAnyScaleAndPlace) {
-  const Positions points = test::randomSphere(500, 4);
+  const Positions points = randomSphere(500, 4);
   for (const double scale : {0x1p-1040, 1e-300, 1e-30, 1.0, 1e30, 1e100}) {
     const Positions ordered = orderPoints(scale * points, 1).points;
     const double extent = (ordered.rowwise().maxCoeff() - ordered.rowwise().minCoeff()).maxCoeff();
@@ -67,4 +67,4 @@ TEST(OrderedPoints, AreOfExtentOneAtAnyScaleAndPlace) {
 }
 
 }  // namespace
-}  // namespace spherical_param::internal
+}  // namespace spherical_param::test

@@ -7,9 +7,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::DeviatingPoints;
-using internal::deviatingPoints;
-
 void expectFound(const Positions& surface, const Positions& outliers) {
   const Positions points = horizontally(surface, outliers);
   for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation})

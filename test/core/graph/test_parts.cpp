@@ -85,14 +85,14 @@ TEST(Parts, AreNotJoinedToNetsOfPointsInside) {
   const Positions sphere = spiralSphere(2000);
   const Positions points = horizontally(sphere, 0.7 * randomSphere(100, 3));
   const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const internal::Stars stars = test::starsOf(points, lists);
-  const Graph agreed = internal::agreedGraph(points, stars, {});
+  const Stars stars = test::starsOf(points, lists);
+  const Graph agreed = agreedGraph(points, stars, {});
   std::size_t reaching = 0;
   for (Index i = 2000; i < 2100; ++i)
     for (const Index j : stars.of(i))
       reaching += j < 2000 ? 1 : 0;
   EXPECT_GT(reaching, 500U);
-  EXPECT_EQ(internal::joinedAlongRims(points, agreed, stars).neighbors, agreed.neighbors);
+  EXPECT_EQ(joinedAlongRims(points, agreed, stars).neighbors, agreed.neighbors);
 }
 
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {

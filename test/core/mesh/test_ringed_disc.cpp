@@ -7,9 +7,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::RingedDisc;
-using internal::ringedDisc;
-
 std::vector<double> evenRim(std::size_t size) {
   std::vector<double> angles;
   for (std::size_t i = 0; i < size; ++i)
@@ -39,7 +36,7 @@ TEST(RingedDisc, IsADiscBelowItsRim) {
     EXPECT_TRUE(topology.isOpenSurface());
     EXPECT_EQ(topology.euler_characteristic, 1);
     // The surface outside goes round the rim in the order of the angles, the disc against it.
-    const auto loops = internal::boundaryLoops(disc.triangles, count);
+    const auto loops = boundaryLoops(disc.triangles, count);
     ASSERT_EQ(loops.size(), 1U);
     ASSERT_EQ(loops[0].size(), rim.size());
     for (std::size_t i = 0; i < rim.size(); ++i)

@@ -9,8 +9,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::SphereMesh;
-
 /// Two hubs, 0 and 1, over and under a ring of `ring` vertices.
 Triangles bipyramid(Index ring) {
   Triangles triangles(3, 2 * ring);

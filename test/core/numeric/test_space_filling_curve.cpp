@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param::internal {
+namespace spherical_param::test {
 namespace {
 
 TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
@@ -40,8 +40,8 @@ Positions cap(Index n, double radius) {
 // Also in caps that are smaller than the cells of the curve.
 TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
   const std::vector<std::pair<Positions, double>> clouds{
-      {test::randomSphere(2000, 2), std::sqrt(4.0 * test::kPi)},
-      {test::randomSphere(50000, 2), std::sqrt(4.0 * test::kPi)},
+      {randomSphere(2000, 2), std::sqrt(4.0 * kPi)},
+      {randomSphere(50000, 2), std::sqrt(4.0 * kPi)},
       {cap(20000, 1e-6), 2e-6},
       {cap(20000, 1e-12), 2e-12}};
   for (const auto& [points, width] : clouds) {
@@ -57,4 +57,4 @@ TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
 }
 
 }  // namespace
-}  // namespace spherical_param::internal
+}  // namespace spherical_param::test

@@ -13,7 +13,7 @@
 /// Meshes to optimise, and the energy from its definition.
 namespace spherical_param::test {
 
-using Bend = internal::SurfaceEnergy::Bend;
+using Bend = SurfaceEnergy::Bend;
 
 /// A mesh, and the graph that its cloud has.
 struct Case {
@@ -25,7 +25,7 @@ struct Case {
 /// Flips at random, whatever the shape.
 inline Triangles scrambled(const Triangles& triangles, Index vertex_count, int flips,
                            std::uint64_t seed) {
-  internal::SphereMesh mesh(triangles, static_cast<std::size_t>(vertex_count));
+  SphereMesh mesh(triangles, static_cast<std::size_t>(vertex_count));
   std::mt19937_64 random(seed);
   for (int i = 0; i < flips; ++i)
     mesh.flip(static_cast<Index>(random() % static_cast<std::uint64_t>(mesh.size())),
@@ -35,8 +35,7 @@ inline Triangles scrambled(const Triangles& triangles, Index vertex_count, int f
 
 /// Seen from the centroid: right for a star-shaped cloud, folded for others.
 inline Case radialStart(const Positions& points) {
-  return {points, triangulateSphere(internal::projectFromCentroid(points)),
-          localDelaunayGraph(points).graph};
+  return {points, triangulateSphere(projectFromCentroid(points)), localDelaunayGraph(points).graph};
 }
 
 /// An affine image of an even sphere, with its convex hull, which is the best mesh there is.
@@ -76,9 +75,9 @@ inline Case tangle(Index n) {
   return of;
 }
 
-inline internal::EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {
-  internal::EnergyMesh mesh(of.points, of.triangles, of.graph, 1);
-  internal::SurfaceEnergy energy;
+inline EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {
+  EnergyMesh mesh(of.points, of.triangles, of.graph, 1);
+  SurfaceEnergy energy;
   energy.bend = bend;
   energy.mu = mu;
   mesh.setEnergy(energy);

@@ -6,8 +6,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::EnergyMesh;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Flips, merges and splits at random.
@@ -82,13 +80,12 @@ TEST(EnergyMesh, IntersectionsAreThoseOfItsTriangles) {
   for (const Case& of : roughCases()) {
     EnergyMesh mesh = meshOf(of);
     const auto all = findSelfIntersections(of.points, of.triangles);
-    EXPECT_EQ(internal::findIntersections(mesh, 10000, {}).pairs, all);
-    EXPECT_TRUE(all.empty() || internal::findIntersections(mesh, 1, {}).is_sample);
+    EXPECT_EQ(findIntersections(mesh, 10000, {}).pairs, all);
+    EXPECT_TRUE(all.empty() || findIntersections(mesh, 1, {}).is_sample);
     // Other positions of the same points.
     const Positions moved = withNoise(of.points, 0.05, 8);
     mesh.setPoints(moved);
-    EXPECT_EQ(internal::findIntersections(mesh, 10000, {}).pairs,
-              findSelfIntersections(moved, of.triangles));
+    EXPECT_EQ(findIntersections(mesh, 10000, {}).pairs, findSelfIntersections(moved, of.triangles));
   }
 }
 

@@ -7,12 +7,8 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::EnergyMesh;
-using internal::Flips;
-using internal::SphereMesh;
-
 /// Ends work that reports more often.
-internal::FractionReport reportUpTo(int most) {
+FractionReport reportUpTo(int most) {
   return [most, calls = 0](double) mutable {
     if (++calls > most)
       throw std::runtime_error("too many reports: it may go on forever");

@@ -7,11 +7,8 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::OpenMesh;
-using internal::Removal;
-
 OpenMesh closedMesh(const Triangles& triangles) {
-  return {triangles, internal::Indexed<std::uint8_t>(internal::columnCount(triangles), 0)};
+  return {triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
 }
 
 /// Of a closed mesh, whose pairs are found before.
@@ -76,10 +73,10 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   points.rightCols(200) = randomCube(200, 1) * 0.2;
   OpenMesh mesh = closedMesh(triangulateSphere(spiralSphere(600)));
   const std::size_t left_out =
-      internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
+      leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
   const Triangles surface = internal::surfaceOf(mesh);
   EXPECT_GT(left_out, 200U);
-  EXPECT_LE(left_out + internal::columnCount(surface), 1196U);
+  EXPECT_LE(left_out + columnCount(surface), 1196U);
   EXPECT_TRUE(findSelfIntersections(points, surface).empty());
   const MeshTopology topology = checkTopology(surface, 600);
   EXPECT_TRUE(topology.manifold() && topology.oriented);
@@ -91,8 +88,8 @@ TEST(IntersectionRemoval, CountsWhatIsLeftOutBecauseItIntersects) {
   // Nothing hangs on what intersects at one vertex.
   Pierced sphere;
   const auto pairs = findSelfIntersections(sphere.points, sphere.mesh.triangles);
-  const std::size_t left_out = internal::leaveOutTangles(400, pairs, sphere.mesh);
-  EXPECT_EQ(left_out + internal::surfaceCount(sphere.mesh), 796U);
+  const std::size_t left_out = leaveOutTangles(400, pairs, sphere.mesh);
+  EXPECT_EQ(left_out + surfaceCount(sphere.mesh), 796U);
   EXPECT_GT(left_out, 0U);
   EXPECT_EQ(sphere.intersections(), 0U);
 }
@@ -111,7 +108,7 @@ TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
       mesh.is_open[t] = lowest <= height && (is_alone || lowest > height - 0.2) ? 1 : 0;
     }
     const auto before = internal::surfaceOf(mesh).cols();
-    EXPECT_EQ(internal::leaveOutTangles(600, {}, mesh), 0U);
+    EXPECT_EQ(leaveOutTangles(600, {}, mesh), 0U);
     return std::pair(cap, cap - (before - internal::surfaceOf(mesh).cols()));
   };
   const auto [small, kept_of_small] = kept_of(0.93, false);

@@ -6,10 +6,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::boxOf;
-using internal::Face;
-using internal::LocalIntersections;
-
 Face faceOf(const Positions& points, const Triangles& triangles, Index t) {
   Face face{{points.col(triangles(0, t)), points.col(triangles(1, t)), points.col(triangles(2, t))},
             0.0,

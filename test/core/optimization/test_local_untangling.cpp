@@ -6,14 +6,14 @@
 namespace spherical_param::test {
 namespace {
 
-int pairsOf(const Case& of, const internal::EnergyMesh& mesh) {
+int pairsOf(const Case& of, const EnergyMesh& mesh) {
   return static_cast<int>(findSelfIntersections(of.points, mesh.mesh().triangles()).size());
 }
 
 TEST(LocalUntangling, FlipsApartAreCountedAndEndAfterTheirWork) {
   const Case of = scrambledEllipsoid(300, 0.5, 600, 3);
-  internal::EnergyMesh mesh = meshOf(of);
-  internal::LocalUntangling local(mesh);
+  EnergyMesh mesh = meshOf(of);
+  LocalUntangling local(mesh);
   local.watch(range(0, of.points.cols()));
   local.limitWork(0);
   EXPECT_EQ(local.flipApart(), 0);
@@ -28,8 +28,8 @@ TEST(LocalUntangling, FlipsApartAreCountedAndEndAfterTheirWork) {
 
 TEST(LocalUntangling, AChangeIsCountedWithWhatFlipsMakeOfIt) {
   const Case of = noisySphere(300, 0.5, 2);
-  internal::EnergyMesh mesh = meshOf(of);
-  internal::LocalUntangling local(mesh);
+  EnergyMesh mesh = meshOf(of);
+  LocalUntangling local(mesh);
   const int before = pairsOf(of, mesh);
   int repaired = 0;
   for (Index t = 0; t < mesh.mesh().size(); t += 20) {

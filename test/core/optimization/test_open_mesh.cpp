@@ -7,9 +7,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::OpenMesh;
-using internal::OpenPlaces;
-
 /// A double pyramid over a ring of n points at z = 0, with tips n and n + 1.
 struct DoublePyramid {
   explicit DoublePyramid(Index n) : points(3, n + 2), triangles(3, 2 * n) {
@@ -31,7 +28,7 @@ struct DoublePyramid {
       opening.loop = std::move(loop);
       openings.openings.push_back(opening);
     }
-    return internal::openMesh(points, triangles, OpenPlaces(points, graph, openings));
+    return openMesh(points, triangles, OpenPlaces(points, graph, openings));
   }
 
   Positions points;
@@ -98,8 +95,8 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
   Openings openings;
   openings.spacing.assign(static_cast<std::size_t>(points.cols()), 1e-3);
   openings.openings.emplace_back().loop = loop;
-  const Triangles surface = internal::surfaceOf(
-      internal::openMesh(points, triangles, OpenPlaces(points, graph, openings)));
+  const Triangles surface =
+      internal::surfaceOf(openMesh(points, triangles, OpenPlaces(points, graph, openings)));
   const MeshTopology topology = checkTopology(surface, static_cast<std::size_t>(points.cols()));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.unused_vertices.empty());
@@ -126,14 +123,14 @@ TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
     pyramid.graph.offsets[static_cast<std::size_t>(v) + 1] = pyramid.graph.neighbors.size();
   }
   OpenPlaces places(pyramid.points, pyramid.graph, pyramid.openings);
-  const internal::SphereMesh mesh(pyramid.triangles, 10);
-  const std::vector<Index> found = internal::trianglesWithoutLoop(mesh, places);
+  const SphereMesh mesh(pyramid.triangles, 10);
+  const std::vector<Index> found = trianglesWithoutLoop(mesh, places);
   EXPECT_EQ(std::set<Index>(found.begin(), found.end()), (std::set<Index>{6, 8}));
   EXPECT_TRUE(places.isOpen(4, 5, 8));
   places.close({3, 4, 5, 8});
   EXPECT_FALSE(places.isOpen(4, 5, 8));
   EXPECT_TRUE(places.isOpen(0, 1, 8));
-  EXPECT_TRUE(internal::trianglesWithoutLoop(mesh, places).empty());
+  EXPECT_TRUE(trianglesWithoutLoop(mesh, places).empty());
 }
 
 }  // namespace

@@ -5,10 +5,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::EnergyMesh;
-using internal::Flips;
-using internal::RuinAndRecreate;
-
 TEST(RuinAndRecreate, MovesThatGainAreKeptAndOthersLeaveTheMesh) {
   int relocated = 0;
   int recreated = 0;
@@ -31,10 +27,9 @@ TEST(RuinAndRecreate, MovesThatGainAreKeptAndOthersLeaveTheMesh) {
       };
       const auto n = static_cast<Index>(of.points.cols());
       for (Index v = 0; v < n; v += 3)
-        relocated += is_kept([&] { return ruins.recreate({v}, internal::isGain); });
+        relocated += is_kept([&] { return ruins.recreate({v}, isGain); });
       for (Index v = 0; v < n; v += 7)
-        recreated +=
-            is_kept([&] { return ruins.recreate(ruins.spread({v}, 12), internal::isGain); });
+        recreated += is_kept([&] { return ruins.recreate(ruins.spread({v}, 12), isGain); });
       EXPECT_TRUE(isSphereOverAll(mesh.mesh().triangles(), n));
     }
   EXPECT_GT(relocated, 50);

@@ -7,9 +7,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::analyzeSampling;
-using internal::Sampling;
-
 /// A grid on the side of a cylinder of radius 1.
 Positions cylinderGrid(int around, int along, double spacing_along) {
   Positions points(3, around * along);

@@ -1,7 +1,6 @@
 #include "smooth_fill.h"
 
 #include "core/reconstructions.h"
-#include "pi.h"
 
 namespace spherical_param::test {
 namespace {
@@ -39,13 +38,13 @@ TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
   EXPECT_EQ(smooth.verdict.substr(smooth.verdict.find(';')),
             "; " + std::to_string(added) + " vertices added in 2 filled openings.");
   // All triangles at added vertices are over openings.
-  std::vector<char> is_over(internal::columnCount(smooth.triangles), 0);
+  std::vector<char> is_over(columnCount(smooth.triangles), 0);
   for (const Opening& opening : smooth.openings)
     for (const Index t : opening.triangles)
       is_over.at(static_cast<std::size_t>(t)) = 1;
   for (Index t = 0; t < smooth.triangles.cols(); ++t)
     EXPECT_TRUE(smooth.triangles.col(t).maxCoeff() < n || is_over[static_cast<std::size_t>(t)]);
-  EXPECT_NEAR(smooth.measures.volume, 4.0 / 3.0 * internal::kPi, 0.07);  // 0.24 if flat
+  EXPECT_NEAR(smooth.measures.volume, 4.0 / 3.0 * kPi, 0.07);  // 0.24 if flat
   EXPECT_EQ(smooth.duplicates(), 0U);
 }
 
@@ -57,7 +56,7 @@ struct Plate {
 
   Plate() {
     for (Index i = 0; i < 120; ++i) {
-      const double angle = 2.0 * internal::kPi * (i % 40) / 40.0;
+      const double angle = 2.0 * kPi * (i % 40) / 40.0;
       const double radius = 1.0 + 0.15 * (i / 40);
       points.col(i) << radius * std::cos(angle), radius * std::sin(angle), 0.0;
     }
@@ -75,8 +74,7 @@ struct Plate {
 
 TEST(SmoothFill, OfAPlateIsFlatAndAsDenseAsThePlate) {
   const Plate plate;
-  const internal::SmoothFill fill =
-      internal::fillSmoothly(plate.points, plate.triangles, plate.openings, {});
+  const SmoothFill fill = fillSmoothly(plate.points, plate.triangles, plate.openings, {});
   EXPECT_EQ(fill.points.leftCols(120), plate.points);
   EXPECT_LT(fill.points.row(2).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
@@ -107,14 +105,13 @@ TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
   plate.points.rightCols(3) << -3, 3, 0, -3, -3, 3, 0.02, 0.02, 0.02;
   plate.triangles.conservativeResize(3, 199);
   plate.triangles.col(198) << 120, 121, 122;
-  const auto fill = internal::fillSmoothly(plate.points, plate.triangles, plate.openings, {});
+  const auto fill = fillSmoothly(plate.points, plate.triangles, plate.openings, {});
   EXPECT_GT(fill.points.cols(), 123);
   EXPECT_TRUE(fill.self_intersections.empty());
   EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
-  const auto free =
-      internal::fillSmoothly(below, plate.triangles.leftCols(198), plate.openings, {});
+  const auto free = fillSmoothly(below, plate.triangles.leftCols(198), plate.openings, {});
   EXPECT_GT(free.points.row(2).maxCoeff(), 0.1);
-  const auto none = internal::fillSmoothly(below, plate.triangles.leftCols(198), {{}}, {});
+  const auto none = fillSmoothly(below, plate.triangles.leftCols(198), {{}}, {});
   EXPECT_EQ(none.triangles, plate.triangles.leftCols(198));
 }
 
@@ -124,12 +121,12 @@ TEST(SmoothFill, WhatIsNoDiscStays) {
   plate.points.rightCols(40) *= 3.0;
   std::vector<Index> ring(80);
   std::iota(ring.begin(), ring.end(), Index{80});
-  const auto fill = internal::fillSmoothly(plate.points, plate.triangles, {ring}, {});
+  const auto fill = fillSmoothly(plate.points, plate.triangles, {ring}, {});
   EXPECT_EQ(fill.points, plate.points);
   EXPECT_EQ(fill.triangles, plate.triangles);
   // Without two triangles it is a disc.
   ring.resize(78);
-  const auto disc = internal::fillSmoothly(plate.points, plate.triangles, {ring}, {});
+  const auto disc = fillSmoothly(plate.points, plate.triangles, {ring}, {});
   EXPECT_GT(disc.points.cols(), 120);
 }
 

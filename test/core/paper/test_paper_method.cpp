@@ -14,7 +14,7 @@ namespace {
 using internal::paper::nearestNeighborGraph;
 
 /// Total length of the minimum spanning tree over the parts (J. B. Kruskal, 1956, on all pairs).
-double shortestJoin(const Positions& points, internal::UnionFind parts) {
+double shortestJoin(const Positions& points, UnionFind parts) {
   std::vector<std::tuple<double, Index, Index>> pairs;
   for (Index i = 0; i < points.cols(); ++i)
     for (Index j = 0; j < i; ++j)
@@ -45,7 +45,7 @@ TEST(PaperGraph, JoinsEachPointToItsKNearestInLongUntidyLists) {
 
 TEST(PaperGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
   Positions points(3, 0);
-  internal::UnionFind parts(180);
+  UnionFind parts(180);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-40.0, 40.0);
   const Index pieces = 9;
@@ -87,7 +87,7 @@ Graph nearestGraph(const Positions& points, int k) {
 }
 
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, const internal::EmbeddingObserver& observer = {}) {
+                double tolerance, const EmbeddingObserver& observer = {}) {
   return internal::paper::embed(graph, points, options, tolerance, observer, {});
 }
 
@@ -186,8 +186,8 @@ TEST(PaperHull, IsThatOfQhullOrWhereItLeavesPointsOutTheExactOne) {
   const Positions sphere = randomSphere(200, 1);
   const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
   const Positions crowded = horizontally(sphere, cap(400, 1e-8, pole, 2));
-  EXPECT_EQ(internal::hullByQhull(sphere).cols(), 396);
-  ASSERT_EQ(internal::hullByQhull(crowded).cols(), 0) << "this cap does not put qhull to the test";
+  EXPECT_EQ(hullByQhull(sphere).cols(), 396);
+  ASSERT_EQ(hullByQhull(crowded).cols(), 0) << "this cap does not put qhull to the test";
   for (const Positions& points : {sphere, crowded, horizontally(sphere, sphere)}) {
     const Triangles hull = internal::paper::convexHull(points, {});
     EXPECT_TRUE(isSphereOverAll(hull, static_cast<Index>(points.cols())));

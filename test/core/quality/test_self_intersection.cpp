@@ -293,9 +293,9 @@ TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
     const Mesh mesh = unevenSoup(3, small, 0, 0);
     const Pairs all = pairsOf(mesh);
     const auto found = [&](std::size_t most, int threads) {
-      return internal::findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
+      return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
     };
-    const internal::IntersectingPairs sample = found(200, 1);
+    const IntersectingPairs sample = found(200, 1);
     EXPECT_TRUE(sample.is_sample);
     EXPECT_EQ(sample.pairs, found(200, 3).pairs);
     EXPECT_GT(countTriangles(sample.pairs), 200U);
@@ -306,7 +306,7 @@ TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
   const Mesh mesh = unevenSoup(3, 30000, 3000, 4);
   const Pairs all = pairsOf(mesh);
   const auto found = [&](std::size_t most, int threads) {
-    return internal::findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
+    return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
   };
   const std::size_t count = countTriangles(all);
   ASSERT_GT(count, 5000U);

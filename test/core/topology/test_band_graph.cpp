@@ -7,14 +7,11 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::BandGraph;
-
 /// How much a sphere squeezes a cloud.
 double squeezeOf(const Positions& points) {
   const Graph graph = localDelaunayGraph(points).graph;
-  const internal::NodeSizes sizes{internal::nodeSpacings(graph, 1),
-                                  internal::Indexed<double>(graph.size(), 1.0)};
-  internal::Indexed<Index> band_of(graph.size(), -1);
+  const NodeSizes sizes{nodeSpacings(graph, 1), Indexed<double>(graph.size(), 1.0)};
+  Indexed<Index> band_of(graph.size(), -1);
   const BandGraph bands(graph, sizes, 0, band_of);
   for (const Index v : graph.nodes()) {
     const std::vector<Index>& nodes = bands.bands()[band_of[v]].nodes;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param::internal {
+namespace spherical_param::test {
 namespace {
 
 TEST(CycleLabels, EdgesWithoutABitAreLeftOut) {
@@ -15,7 +15,7 @@ TEST(CycleLabels, EdgesWithoutABitAreLeftOut) {
       edges.emplace_back(0, 2 + way);
       edges.emplace_back(2 + way, 1);
     }
-    const NumberedGraph graph(test::unitGraph(2 + ways, edges));
+    const NumberedGraph graph(unitGraph(2 + ways, edges));
     CycleLabels labels(graph, {});
     EXPECT_EQ(labels.rank(), 64);
     EXPECT_EQ(labels.areComplete(), ways == 65);
@@ -29,4 +29,4 @@ TEST(CycleLabels, EdgesWithoutABitAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace spherical_param::internal
+}  // namespace spherical_param::test

@@ -14,10 +14,10 @@ Graph delaunayGraph(const Positions& points) {
 
 /// The mesh of the faces of a graph, and of the other nodes.
 std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std::size_t genus) {
-  const auto faces = internal::meshFaces(points, graph, genus, {});
+  const auto faces = meshFaces(points, graph, genus, {});
   if (!faces)
     return std::nullopt;
-  return internal::withAllNodes(points, graph, faces->triangles);
+  return withAllNodes(points, graph, faces->triangles);
 }
 
 /// The edges of a mesh, {lower, higher}.
@@ -59,7 +59,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
         bridges.push_back({v, w, distance});
     }
   ASSERT_GT(bridges.size(), 20U);
-  const auto mesh = meshOf(thin, internal::withEdges(graph, bridges), 0);
+  const auto mesh = meshOf(thin, withEdges(graph, bridges), 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 1500));
   const auto found = edgesOf(*mesh);
@@ -84,9 +84,9 @@ TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
 TEST(FaceMesh, SaysWhatIsNoFace) {
   // The loop of 20 points and more around a hole is no face.
   const Positions points = sphereWithHoles(1000, 1, 0.4);
-  const auto mesh = internal::meshFaces(points, delaunayGraph(points), 0, {});
+  const auto mesh = meshFaces(points, delaunayGraph(points), 0, {});
   ASSERT_TRUE(mesh);
-  ASSERT_EQ(mesh->is_filling.size(), internal::columnCount(mesh->triangles));
+  ASSERT_EQ(mesh->is_filling.size(), columnCount(mesh->triangles));
   Index fillings = 0;
   for (Eigen::Index t = 0; t < mesh->triangles.cols(); ++t)
     if (mesh->is_filling[t] != 0) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_param::internal {
+namespace spherical_param::test {
 namespace {
 
 constexpr Index kTubeRings = 8;
@@ -17,15 +17,15 @@ constexpr Index kVertices = kNodes + kTubeAround + 2;
 /// A torus that is cut along its ring 0, whose right copies follow the nodes.
 CutGraph cutTorus() {
   CutGraph cut;
-  cut.points = test::spiralSphere(kNodes + kTubeAround);
+  cut.points = spiralSphere(kNodes + kTubeAround);
   for (Index v = 0; v < kNodes; ++v)
     cut.node_of.push_back(v);
   for (Index k = 0; k < kTubeAround; ++k)
     cut.node_of.push_back(k);
   // The surface is on the left of the ring from ring 0 to ring 1, and of the right copies, from the
   // last ring to them.
-  std::vector<Index> left = test::range(0, kTubeAround);
-  std::vector<Index> right = test::range(kNodes, kNodes + kTubeAround);
+  std::vector<Index> left = range(0, kTubeAround);
+  std::vector<Index> right = range(kNodes, kNodes + kTubeAround);
   std::reverse(left.begin(), left.end());
   cut.rims = {left, right};
   return cut;
@@ -33,7 +33,7 @@ CutGraph cutTorus() {
 
 /// The tube of the cut torus, with a virtual node over each rim.
 Triangles cappedTube() {
-  const Triangles torus = test::torusTriangles(kTubeRings, kTubeAround);
+  const Triangles torus = torusTriangles(kTubeRings, kTubeAround);
   Triangles tube(3, torus.cols() + 2 * kTubeAround);
   for (Eigen::Index t = 0; t < torus.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -55,24 +55,24 @@ CutGraph withGraph(CutGraph cut, const Triangles& tube) {
     for (Index k = 0; k < 3; ++k)
       if (t[k] < kLeft && t[(k + 1) % 3] < kLeft)
         edges.emplace_back(t[k], t[(k + 1) % 3]);
-  cut.graph = test::unitGraph(kLeft, edges);
+  cut.graph = unitGraph(kLeft, edges);
   return cut;
 }
 
 TEST(Glue, ACutTorusIsTheTorusAgain) {
   const Triangles tube = cappedTube();
-  ASSERT_TRUE(test::isSphereOverAll(tube, kVertices));
+  ASSERT_TRUE(isSphereOverAll(tube, kVertices));
   const CutGraph cut = withGraph(cutTorus(), tube);
-  const auto torus = test::canonical(test::torusTriangles(kTubeRings, kTubeAround));
+  const auto torus = canonical(torusTriangles(kTubeRings, kTubeAround));
   const std::optional<Triangles> glued = glue(kNodes, cut, tube, 1, kVertices);
   ASSERT_TRUE(glued);
-  EXPECT_EQ(test::canonical(*glued), torus);
+  EXPECT_EQ(canonical(*glued), torus);
   // Also a sphere that came out as a mirror image.
   Triangles mirrored = tube;
   mirrored.row(0).swap(mirrored.row(1));
   const std::optional<Triangles> turned = glue(kNodes, cut, mirrored, 1, kVertices);
   ASSERT_TRUE(turned);
-  EXPECT_EQ(test::canonical(*turned), torus);
+  EXPECT_EQ(canonical(*turned), torus);
 }
 
 TEST(Glue, LostRimsAreRecovered) {
@@ -89,7 +89,7 @@ TEST(Glue, LostRimsAreRecovered) {
     if (!glued)
       continue;
     ++recovered;
-    EXPECT_TRUE(test::isSurfaceOverAll(*glued, kNodes, 1));
+    EXPECT_TRUE(isSurfaceOverAll(*glued, kNodes, 1));
   }
   EXPECT_GE(recovered, 45);
 }
@@ -105,4 +105,4 @@ TEST(Glue, WhatIsNoTorusIsRefused) {
 }
 
 }  // namespace
-}  // namespace spherical_param::internal
+}  // namespace spherical_param::test

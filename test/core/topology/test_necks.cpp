@@ -10,8 +10,6 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::CutLoop;
-
 /// Points on a tube of radius 1 with round ends.
 Positions needle(int rings, int around) {
   Positions points = tube(rings, around);
@@ -43,13 +41,13 @@ struct Cut {
 Cut cutOf(const Positions& points) {
   Cut cut;
   cut.graph = localDelaunayGraph(points).graph;
-  const auto spacing = internal::nodeSpacings(cut.graph, 1);
-  internal::RotationSystem rotation(points, cut.graph, spacing, 1);
-  cut.openings = internal::findOpenings(points, cut.graph, spacing, rotation);
-  cut.graph = internal::withoutFalseEdges(points, cut.graph, cut.openings.false_edges);
-  cut.necks = internal::findNecks(points, cut.graph, rotation, cut.openings, {}).loops;
-  const internal::CutGraph cut_graph = internal::cutAlong(points, cut.graph, rotation, cut.necks);
-  internal::UnionFind sets = internal::connectedComponents(cut_graph.graph);
+  const auto spacing = nodeSpacings(cut.graph, 1);
+  RotationSystem rotation(points, cut.graph, spacing, 1);
+  cut.openings = findOpenings(points, cut.graph, spacing, rotation);
+  cut.graph = withoutFalseEdges(points, cut.graph, cut.openings.false_edges);
+  cut.necks = findNecks(points, cut.graph, rotation, cut.openings, {}).loops;
+  const CutGraph cut_graph = cutAlong(points, cut.graph, rotation, cut.necks);
+  UnionFind sets = connectedComponents(cut_graph.graph);
   for (const Index v : cut_graph.graph.nodes())
     cut.spheres += sets.find(v) == v ? 1 : 0;
   return cut;

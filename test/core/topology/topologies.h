@@ -12,9 +12,9 @@
 namespace spherical_param::test {
 
 inline Openings openingsOf(const Positions& points, const Graph& graph) {
-  const internal::Indexed<double> spacing = internal::nodeSpacings(graph, 1);
-  internal::RotationSystem rotation(points, graph, spacing, 1);
-  return internal::findOpenings(points, graph, spacing, rotation);
+  const Indexed<double> spacing = nodeSpacings(graph, 1);
+  RotationSystem rotation(points, graph, spacing, 1);
+  return findOpenings(points, graph, spacing, rotation);
 }
 
 struct Topology {
@@ -22,19 +22,19 @@ struct Topology {
       : points(cloud), graph(graphOf(points, findNearestNeighbors(points, 24),
                                      makeNeighborSearch(points), execution)
                                  .graph),
-        spacing(internal::nodeSpacings(graph, execution.threads)),
+        spacing(nodeSpacings(graph, execution.threads)),
         rotation(points, graph, spacing, execution.threads),
-        openings(internal::findOpenings(points, graph, spacing, rotation)),
-        handles(internal::findHandles(rotation, openings.openings, execution)) {}
+        openings(findOpenings(points, graph, spacing, rotation)),
+        handles(findHandles(rotation, openings.openings, execution)) {}
   Topology(const Topology&) = delete;
   Topology& operator=(const Topology&) = delete;
 
   Positions points;
   Graph graph;
-  internal::Indexed<double> spacing;
-  internal::RotationSystem rotation;
+  Indexed<double> spacing;
+  RotationSystem rotation;
   Openings openings;
-  internal::Handles handles;
+  Handles handles;
 };
 
 }  // namespace spherical_param::test

@@ -6,10 +6,8 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::SphereDelaunay;
-
 SphereDelaunay triangulate(const Positions& directions) {
-  return internal::incrementalDelaunay(directions);
+  return incrementalDelaunay(directions);
 }
 
 /// Most triangles around one of the vertices [0, n).
@@ -62,7 +60,7 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
         const SphereDelaunay result = triangulate(points);
         expectSound(points, result);
         EXPECT_EQ(result.coincident, 0);
-        const Triangles reference = internal::hullByQhull(points);
+        const Triangles reference = hullByQhull(points);
         if (reference.cols() == 0)
           continue;
         ++compared;

@@ -15,7 +15,7 @@ inline void expectSound(const Positions& directions, const Triangles& triangles)
   EXPECT_EQ(triangles.cols(), 2 * n - 4);
   EXPECT_TRUE(isSphereOverAll(triangles, n));
 }
-inline void expectSound(const Positions& directions, const internal::SphereDelaunay& result) {
+inline void expectSound(const Positions& directions, const SphereDelaunay& result) {
   expectSound(directions, result.triangles);
 }
 
