@@ -77,15 +77,12 @@ inline Implicit tubesAround(std::vector<std::array<Eigen::Vector3d, 2>> segments
 
 /// A torus of the grid, each ring turned by half a step.
 inline Positions torusCloud(int rings, int around, double radius = 1.0, double tube = 0.4) {
-  Positions points(3, rings * around);
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < around; ++j) {
-      const double u = 2.0 * kPi * i / rings;
-      const double v = 2.0 * kPi * (j + 0.5 * (i % 2)) / around;
-      points.col(i * around + j) << (radius + tube * std::cos(v)) * std::cos(u),
-          (radius + tube * std::cos(v)) * std::sin(u), tube * std::sin(v);
-    }
-  return points;
+  return gridOf(rings, around, [=](int i, int j) {
+    const double u = 2.0 * kPi * i / rings;
+    const double v = 2.0 * kPi * (j + 0.5 * (i % 2)) / around;
+    const double r = radius + tube * std::cos(v);
+    return Eigen::Vector3d(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+  });
 }
 
 /// Two tori side by side that share a part: genus 2.
@@ -144,30 +141,23 @@ inline Positions latticeOfTubes(double spacing) {
 
 /// A Klein bottle in the shape of a figure 8 that is turned by half; it passes through itself.
 inline Positions kleinBottle(int rings, int around) {
-  Positions points(3, rings * around);
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < around; ++j) {
-      const double u = 2.0 * kPi * i / rings;
-      const double v = 2.0 * kPi * (j + 0.5 * (i % 2)) / around;
-      const double x = std::cos(u / 2.0) * std::sin(v) - std::sin(u / 2.0) * std::sin(2.0 * v);
-      const double z = std::sin(u / 2.0) * std::sin(v) + std::cos(u / 2.0) * std::sin(2.0 * v);
-      points.col(i * around + j) << (3.0 + x) * std::cos(u), (3.0 + x) * std::sin(u), z;
-    }
-  return points;
+  return gridOf(rings, around, [=](int i, int j) {
+    const double u = 2.0 * kPi * i / rings;
+    const double v = 2.0 * kPi * (j + 0.5 * (i % 2)) / around;
+    const double x = std::cos(u / 2.0) * std::sin(v) - std::sin(u / 2.0) * std::sin(2.0 * v);
+    const double z = std::sin(u / 2.0) * std::sin(v) + std::cos(u / 2.0) * std::sin(2.0 * v);
+    return Eigen::Vector3d((3.0 + x) * std::cos(u), (3.0 + x) * std::sin(u), z);
+  });
 }
 
 /// A band that is turned by half: one side, one boundary.
 inline Positions moebiusBand(int rings, int across) {
-  Positions points(3, rings * across);
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < across; ++j) {
-      const double u = 2.0 * kPi * (i + 0.5 * (j % 2)) / rings;
-      const double v = 0.1 * (j - (across - 1) / 2.0);
-      const double radius = 2.5 + v * std::cos(u / 2.0);
-      points.col(i * across + j) << radius * std::cos(u), radius * std::sin(u),
-          v * std::sin(u / 2.0);
-    }
-  return points;
+  return gridOf(rings, across, [=](int i, int j) {
+    const double u = 2.0 * kPi * (i + 0.5 * (j % 2)) / rings;
+    const double v = 0.1 * (j - (across - 1) / 2.0);
+    const double radius = 2.5 + v * std::cos(u / 2.0);
+    return Eigen::Vector3d(radius * std::cos(u), radius * std::sin(u), v * std::sin(u / 2.0));
+  });
 }
 
 }  // namespace spherical_param::test

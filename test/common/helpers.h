@@ -90,10 +90,28 @@ inline Positions withNoise(Positions points, double sigma, std::uint64_t seed) {
   return points;
 }
 
-inline Positions horizontally(const Positions& a, const Positions& b) {
+template <typename... More>
+Positions horizontally(const Positions& a, const Positions& b, const More&... more) {
   Positions result(3, a.cols() + b.cols());
   result << a, b;
+  if constexpr (sizeof...(more) > 0)
+    return horizontally(result, more...);
   return result;
+}
+
+/// Along x.
+inline Positions movedTo(double x, const Positions& points) {
+  return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
+}
+
+/// The places (i, j) of a grid, row after row.
+template <typename Place>
+Positions gridOf(int rows, int columns, const Place& place) {
+  Positions points(3, rows * columns);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j)
+      points.col(i * columns + j) = place(i, j);
+  return points;
 }
 
 /// The numbers from `begin` to `end`.

@@ -31,24 +31,20 @@ inline Positions hemisphere(Index n) {
 
 /// A tube of radius 1 without ends: rings of points, each turned by half a step.
 inline Positions tube(int rings, int around) {
-  Positions points(3, rings * around);
   const double step = 2.0 * kPi / around;
-  for (int r = 0; r < rings; ++r)
-    for (int a = 0; a < around; ++a)
-      points.col(r * around + a) << std::cos(step * (a + 0.5 * r)), std::sin(step * (a + 0.5 * r)),
-          step * r;
-  return points;
+  return gridOf(rings, around, [=](int r, int a) {
+    const double angle = step * (a + 0.5 * r);
+    return Eigen::Vector3d(std::cos(angle), std::sin(angle), step * r);
+  });
 }
 
 /// Random points of the square [0, side]^2 at z = 0, a unit apart.
 inline Positions flatPatch(int side) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> jitter(0.0, 0.3);
-  Positions points(3, side * side);
-  for (int x = 0; x < side; ++x)
-    for (int y = 0; y < side; ++y)
-      points.col(x * side + y) << x + jitter(random), y + jitter(random), 0.0;
-  return points;
+  return gridOf(side, side, [&](int x, int y) {
+    return Eigen::Vector3d{x + jitter(random), y + jitter(random), 0.0};
+  });
 }
 
 /// The boundary of a mesh, found edge by edge from the triangles alone: each vertex on it and the

@@ -61,8 +61,8 @@ struct Inputs {
   Positions rough = withNoise(randomSphere(size / 3, 8), 0.02, 9);
   Positions holed = sphereWithHoles(size, 3, 0.4);
   Positions torus = torusCloud(rings, 2 * rings / 5);
-  Positions scattered = horizontally(horizontally(cloud, cloud.leftCols(size / 2).array() + 3.0),
-                                     2.0 * spiralSphere(9));
+  Positions scattered =
+      horizontally(cloud, Positions(cloud.leftCols(size / 2).array() + 3.0), 2.0 * spiralSphere(9));
   Triangles triangles = triangulateSphere(spiralSphere(size));
   Triangles damaged = triangles;
   Mesh knot = bentTube(20.0, 2.2 * kPi, rings / 5 + 4);  // into itself
@@ -113,12 +113,8 @@ void addReconstructions(const Add& add) {
       return numbersOf(reconstruct(in.*cloud, with(options, e)));
     });
   };
-  Options smoothed = watched();
-  smoothed.smoothing = 2;
-  add_of("smoothed", &Inputs::rough, smoothed);
-  Options converged;
-  converged.embedding.tolerance = 1e-7;
-  add_of("converged", &Inputs::cloud, converged);
+  add_of("smoothed", &Inputs::rough, given(watched(), "smoothing", 2));
+  add_of("converged", &Inputs::cloud, given("tolerance", 1e-7));
   Options published = watched(paper());
   published.paper.max_iterations = 5;
   for (const EdgeWeights weights :
@@ -126,13 +122,8 @@ void addReconstructions(const Add& add) {
     published.paper.weights = weights;
     add_of("as published", &Inputs::rough, published);
   }
-  Options open;
-  open.surface = SurfaceMode::Open;
-  add_of("open", &Inputs::holed, open);
-  Options filled;
-  filled.surface = SurfaceMode::Closed;
-  filled.fill = FillMode::Smooth;
-  add_of("filled", &Inputs::holed, filled);
+  add_of("open", &Inputs::holed, given("surface", "open"));
+  add_of("filled", &Inputs::holed, given("surface", "closed", "fill", "smooth"));
   add_of("with a handle", &Inputs::torus, {});
   Options parts;
   parts.parts = PartsMode::Each;
@@ -388,15 +379,11 @@ std::vector<Finder> finders() {
     all.push_back({name, withNoise(cloud, 0.003, 3),
                    [options](const Positions& of) { return trianglesOf(of, options); }});
   };
-  Options converged = sphere();
-  converged.embedding.tolerance = 1e-9;
-  for (const Options& options : {sphere(), converged}) {
+  for (const Options& options : {sphere(), given(sphere(), "tolerance", 1e-9)}) {
     add("ellipsoid", ellipsoid(1000), options);
     add("tube", bentTube(12.0, 2.0, 12).points, options);
   }
-  Options open;
-  open.surface = SurfaceMode::Open;
-  add("openings", sphereWithHoles(2500, 3, 0.3), open);
+  add("openings", sphereWithHoles(2500, 3, 0.3), given("surface", "open"));
   add("handles", plateWithHoles(0.1), {});
   Options parts;
   parts.parts = PartsMode::Each;

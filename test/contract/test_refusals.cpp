@@ -48,13 +48,9 @@ TEST(Refusals, OfPointsSayWhatIsMissingAndWhatWasLeftOut) {
   Positions infinite = good.leftCols(5);
   infinite(1, 0) = infinite(2, 3) = kInfinity;
   expect("there are 3 (left out: 2 points that are not finite)", infinite, {});
-  Options large;
-  large.parts = PartsMode::Each;
-  large.outliers = OutlierMode::Auto;
-  large.min_points = 1000;
+  const Options large = given("parts", "each", "outliers", "auto", "min_points", 1000);
   expect("min_points = 1000 points (left out: 2 points that are not finite, 6 stray points)",
-         horizontally(horizontally(spiralSphere(300), 2.0 * spiralSphere(6)),
-                      Positions::Constant(3, 2, kNan)),
+         horizontally(spiralSphere(300), 2.0 * spiralSphere(6), Positions::Constant(3, 2, kNan)),
          large);
   expectReason("normals", [&] { reconstruct(good, {}, {}, {good.leftCols(3), {}, {}}); });
 }

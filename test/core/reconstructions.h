@@ -1,6 +1,7 @@
 #pragma once
 
 #include "open_shapes.h"
+#include "spherical_param/option_table.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
@@ -21,9 +22,24 @@ inline Positions noisySphere(Index n, double noise) {
 
 /// Two spheres with a gap between them.
 inline Positions twoSpheres(Index n, Index m, double distance) {
-  Positions second = spiralSphere(m);
-  second.row(0).array() += distance;
-  return horizontally(spiralSphere(n), second);
+  return horizontally(spiralSphere(n), movedTo(distance, spiralSphere(m)));
+}
+
+/// Options by the names that the tools have for them: given("surface", "open", "smoothing", 3).
+inline Options given(Options options) {
+  return options;
+}
+template <typename Value, typename... More>
+Options given(Options options, const char* name, const Value& value, const More&... more) {
+  if constexpr (std::is_integral_v<Value>)
+    setOption(options, name, std::int64_t{value});
+  else
+    setOption(options, name, value);
+  return given(options, more...);
+}
+template <typename... More>
+Options given(const char* name, const More&... more) {
+  return given(Options(), name, more...);
 }
 
 /// One sphere through every point.
@@ -34,9 +50,7 @@ inline Options sphere(Options options = {}) {
 
 /// The method as it was published.
 inline Options paper() {
-  Options options;
-  options.method = Method::Paper;
-  return options;
+  return given("method", "paper");
 }
 
 /// Both methods, for one sphere.

@@ -87,9 +87,7 @@ TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
 
 TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
   const Positions points = ellipsoid(600);
-  Options options = quick(paper());
-  options.paper.max_iterations = 3;
-  options.paper.weights = EdgeWeights::InverseLength;
+  const Options options = quick(given(paper(), "max_iterations", 3, "weights", "inverse"));
   const Surface result = mesh(points, watched(options));
   const Graph graph =
       internal::paper::nearestNeighborGraph(points, bruteForceNeighbors(points, 25), 25).graph;
@@ -131,9 +129,7 @@ TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
   const Positions base = noisySphere(500, 0.15);
   const Positions points = horizontally(base.leftCols(50), base);
   const Surface rough = mesh(points);
-  Options options;
-  options.smoothing = 3;
-  const Surface result = mesh(points, options);
+  const Surface result = mesh(points, given("smoothing", 3));
   expectGuarantees(points, result);
   ASSERT_EQ(result.smoothed.cols(), 500);
   // Without intersections on the smoothed points the triangles are those without smoothing.
@@ -162,9 +158,7 @@ TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
   expectGuarantees(points, rough);
   EXPECT_TRUE(rough.is_noisy);
   EXPECT_TRUE(isFound(rough, "nois"));
-  Options options;
-  options.smoothing = 5;
-  const Surface result = mesh(points, options);
+  const Surface result = mesh(points, given("smoothing", 5));
   expectGuarantees(points, result);
   EXPECT_FALSE(isFound(result, "nois"));
   EXPECT_EQ(result.intersecting_triangles, 0U);     // on the smoothed points

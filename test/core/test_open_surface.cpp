@@ -7,10 +7,8 @@
 namespace spherical_param::test {
 namespace {
 
-Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
-  Options options;
-  options.surface = mode;
-  return options;
+Options leftOpen(const char* mode = "open") {
+  return given("surface", mode);
 }
 
 TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
@@ -44,9 +42,7 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
   // given ones unless they are smoothed after it.
   const Positions points = withNoise(hemisphere(1500), 0.5 * std::sqrt(2.0 * kPi / 1500), 3);
   for (const int smoothing : {0, 3}) {
-    Options options = leftOpen();
-    options.smoothing = smoothing;
-    const Surface result = surfaceOf(points, options);
+    const Surface result = surfaceOf(points, given(leftOpen(), "smoothing", smoothing));
     EXPECT_FALSE(result.isClosed());
     EXPECT_TRUE(result.is_noisy);
     EXPECT_TRUE(smoothing == 0 || !result.self_intersections.empty());
@@ -78,7 +74,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
     return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
   });
   EXPECT_THROW(reconstruct(patch, sphere()), InvalidInput);
-  for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
+  for (const char* const mode : {"open", "auto"}) {
     const Surface result = surfaceOf(patch, leftOpen(mode));
     test::expectSound(result, 0, 2);
     double rim = 0.0;  // twice the area that the boundary encloses
@@ -142,13 +138,13 @@ TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
 }
 
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
-  const Surface small = surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
+  const Surface small = surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen("auto"));
   test::expectSound(small, 0, 0);
   ASSERT_EQ(small.openings.size(), 1U);
   EXPECT_TRUE(small.openings[0].is_filled);
-  test::expectSound(surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 0, 1);
+  test::expectSound(surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen("auto")), 0, 1);
   // A tube without ends may be one with flat ends.
-  const Surface tube = surfaceOf(tube(20, 40), leftOpen(SurfaceMode::Auto));
+  const Surface tube = surfaceOf(tube(20, 40), leftOpen("auto"));
   test::expectSound(tube, 0, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }
@@ -159,22 +155,19 @@ TEST(OpenSurface, HolesAreFilledUpToASize) {
   const Surface open = surfaceOf(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];
-  Options by_edges = leftOpen();
-  by_edges.fill_holes = static_cast<int>(second.loop.size());
-  test::expectSound(surfaceOf(points, by_edges), 0, 1);
-  Options by_area = leftOpen();
-  by_area.fill_holes_area = 1.01 * second.area;
-  test::expectSound(surfaceOf(points, by_area), 0, 1);
-  by_area.fill_holes_area = 10.0;
-  test::expectSound(surfaceOf(points, by_area), 0, 0);
+  const auto filled = [&](const char* limit, auto value) {
+    return surfaceOf(points, given(leftOpen(), limit, value));
+  };
+  test::expectSound(filled("fill_holes", static_cast<int>(second.loop.size())), 0, 1);
+  test::expectSound(filled("fill_holes_area", 1.01 * second.area), 0, 1);
+  test::expectSound(filled("fill_holes_area", 10.0), 0, 0);
 }
 
 TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
   const Positions holed = pointsWhere(torusCloud(80, 30, 2.5, 1.0), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
-  Options options = leftOpen();
-  options.handles = HandleMode::None;
+  const Options options = given(leftOpen(), "handles", "none");
   for (const Positions& points : {holed, moebiusBand(160, 12)}) {
     const Surface result = surfaceOf(points, options);
     EXPECT_TRUE(result.topology.manifold());

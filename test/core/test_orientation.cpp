@@ -58,8 +58,7 @@ TEST(Orientation, OfTerrainIsUpUnlessTheSensorSawItFromBelow) {
   expect({{}, center + Eigen::Vector3d(500.0, 0.0, -20.0), {}}, FacedBy::Up, 1.0);
   const Positions down = (-Eigen::Vector3d::UnitZ()).replicate(1, points.cols());
   expect({down, center + 40.0 * Eigen::Vector3d::UnitZ(), {}}, FacedBy::Normals, -1.0);
-  Options consolidated;
-  consolidated.consolidation = ConsolidationMode::Auto;
+  const Options consolidated = given("consolidation", "auto");
   EXPECT_EQ(reconstruct(points, consolidated, {}, {down, std::nullopt, {}}).surface().faced_by,
             FacedBy::Normals);
 }

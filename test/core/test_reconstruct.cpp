@@ -78,9 +78,7 @@ TEST(Reconstruct, NastySetsAreMeshed) {
 
 TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReported) {
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
-  Options options = paper();
-  options.paper.max_iterations = 0;
-  const Surface result = mesh(points, options);
+  const Surface result = mesh(points, given(paper(), "max_iterations", 0));
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_FALSE(result.embedding.fallback_start);
@@ -90,12 +88,8 @@ TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReported) {
 TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
   Positions mirrored = ellipsoid(600);
   mirrored.row(0) *= -1.0;
-  Options collapsing = paper();
-  collapsing.paper.weights = EdgeWeights::Uniform;
-  collapsing.paper.max_iterations = 20000;
-  collapsing.paper.k = 3;
-  Options radial = paper();
-  radial.paper.max_iterations = 0;
+  const Options collapsing = given(paper(), "weights", "uniform", "max_iterations", 20000, "k", 3);
+  const Options radial = given(paper(), "max_iterations", 0);
   for (const Positions& points : {ellipsoid(600), mirrored})
     for (const Options& options : {Options(), paper(), radial, collapsing}) {
       const Surface result = mesh(points, watched(options));
@@ -142,8 +136,6 @@ TEST(Reconstruct, AskingForDetailsChangesNoBit) {
   }
 }
 
-// --- Neighbours and repetitions ------------------------------------------------------------------
-
 TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {
   const Positions points = horizontally(randomSphere(60, 1), randomSphere(60, 1));
   const NeighborLists lists = bruteForceNeighbors(points.leftCols(60), 12);
@@ -166,13 +158,10 @@ TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {
                std::runtime_error);
 }
 
-// --- Options -------------------------------------------------------------------------------------
-
 TEST(Reconstruct, EveryOptionReachesItsStage) {
   using Change = std::pair<std::string, OptionValue>;
   const Positions points = ellipsoid(1500);
-  Options published = paper();
-  published.paper.max_iterations = 20;
+  Options published = given(paper(), "max_iterations", 20);
   const std::vector<std::pair<Options, std::vector<Change>>> changes{
       {Options(), {{"method", "paper"}, {"tolerance", 1e-9}, {"seed", std::int64_t{2}}}},
       {published,
@@ -185,8 +174,7 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
   for (const auto& [from, of_method] : changes) {
     const Positions sphere = surfaceOf(points, quick(from)).sphere;
     for (const auto& [name, value] : of_method) {
-      Options options = quick(from);
-      setOption(options, name, value);
+      const Options options = given(quick(from), name.c_str(), value);
       EXPECT_TRUE(surfaceOf(points, options).sphere != sphere) << name;
     }
   }
@@ -196,9 +184,8 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
   EXPECT_EQ(mesh(ellipsoid(100), published).embedding.iterations, 2000);
   const Positions rough = noisySphere(300, 0.5);
   EXPECT_TRUE(surfaceOf(rough, quick()).triangles != surfaceOf(rough).triangles);
-  Options all_others = paper();
-  all_others.paper.k = 1000;
-  expectGuarantees(randomSphere(12, 1), mesh(randomSphere(12, 1), all_others));
+  const Positions few = randomSphere(12, 1);
+  expectGuarantees(few, mesh(few, given(paper(), "k", 1000)));  // all others
 }
 
 TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {

@@ -180,8 +180,7 @@ void expectScaled(const Surface& result, const Surface& scaled, double scale) {
 TEST(ResultFields, ResultOfAScaledCloudIsTheScaledResult) {
   // Open at one end, so that there is an opening to measure.
   const Positions points = withNoise(spiralSphere(500), 0.003, 8).rightCols(400);
-  Options options;
-  options.smoothing = 2;
+  const Options options = given("smoothing", 2);
   const Surface result = mesh(points, options);
   ASSERT_EQ(result.openings.size(), 1U);
   for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {

@@ -9,18 +9,13 @@
 namespace spherical_param::test {
 namespace {
 
-Positions movedTo(double x, const Positions& points) {
-  return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
-}
-
 /// Two noisy spheres, points of no surface, repeated points and points that are not finite.
 Positions mixedCloud() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Positions points = horizontally(withNoise(randomSphere(300, 1), 0.01, 2),
                                   movedTo(4.0, withNoise(randomSphere(150, 3), 0.01, 4)));
   points = horizontally(points, 2.0 * spiralSphere(6));
-  points = horizontally(points, points.middleCols(280, 176));
-  points = horizontally(points, Positions::Constant(3, 2, nan));
+  points = horizontally(points, points.middleCols(280, 176), Positions::Constant(3, 2, nan));
   return points(Eigen::all, shuffledRange(points.cols(), 7));
 }
 
@@ -61,17 +56,14 @@ void expectAlone(const Positions& points, const Surface& surface, Options option
 }
 
 TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
-  Positions points = horizontally(ellipsoid(500), movedTo(3.0, hemisphere(400)));
-  points = horizontally(points, movedTo(6.0, torusCloud(40, 16)));
-  points = horizontally(points, Eigen::Vector3d(0.0, 9.0, 0.0));
-  Options options;
-  const Result scan = reconstruct(points, options);
+  const Positions points =
+      horizontally(ellipsoid(500), movedTo(3.0, hemisphere(400)), movedTo(6.0, torusCloud(40, 16)),
+                   Eigen::Vector3d(0.0, 9.0, 0.0));
+  const Result scan = reconstruct(points);
   EXPECT_EQ(scan.verdict,
             "3 surfaces, 1 with openings, 1 with handles, all sound; 1 stray point left out.");
   EXPECT_EQ(scan.surface().genus(), 1U);
-  options.surface = SurfaceMode::Closed;
-  options.parts = PartsMode::Largest;
-  EXPECT_EQ(reconstruct(points, options).verdict,
+  EXPECT_EQ(reconstruct(points, given("surface", "closed", "parts", "largest")).verdict,
             "A sound mesh with 1 handle; 1 stray point, 900 points in other parts left out.");
   const Surface sphere = surfaceOf(points, quick(sphere()));
   EXPECT_TRUE(isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
@@ -85,9 +77,7 @@ TEST(Topology, OfWholeObjectsIsASphereInBothWays) {
     EXPECT_TRUE(scan.left_out.text().empty());
     const Triangles sphere = surfaceOf(points, sphere()).triangles;
     EXPECT_EQ(scan.surface().triangles, sphere);
-    Options open;
-    open.surface = SurfaceMode::Open;
-    EXPECT_EQ(surfaceOf(points, open).triangles, sphere);
+    EXPECT_EQ(surfaceOf(points, given("surface", "open")).triangles, sphere);
   }
 }
 
@@ -138,9 +128,7 @@ Positions square(double x) {
 }
 
 TEST(Selection, APartThatCannotBeMeshedIsLeftOutUnlessNoneCanBe) {
-  Options options;
-  options.parts = PartsMode::Each;
-  options.surface = SurfaceMode::Closed;
+  const Options options = given("parts", "each", "surface", "closed");
   const Result result = reconstruct(horizontally(square(9.0), spiralSphere(80)), options);
   ASSERT_EQ(result.surfaces.size(), 1U);
   EXPECT_EQ(result.surface().inputs.front(), 100);
@@ -187,8 +175,7 @@ TEST(Selection, PartsShareOneTimeLimit) {
   Positions points(3, 0);
   for (int part = 0; part < 8; ++part)
     points = horizontally(points, movedTo(4.0 * part, noisySphere(100, 0.5)));
-  Options options;
-  options.parts = PartsMode::Each;
+  Options options = given("parts", "each");
   for (const auto& [limit, expected] : {std::pair(0.0, 8), std::pair(1e9, 0)}) {
     options.time_limit = limit;
     const Result result = reconstruct(points, options);

@@ -87,9 +87,7 @@ TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
 
 TEST(StageClock, StagesComeInOrderAndEachCanBeCancelled) {
   const Positions sphere = spiralSphere(200);
-  const Positions points =
-      horizontally(horizontally(sphere, sphere.colwise() + Eigen::Vector3d(4.0, 0.0, 0.0)),
-                   2.0 * spiralSphere(4));
+  const Positions points = horizontally(sphere, movedTo(4.0, sphere), 2.0 * spiralSphere(4));
   const Names of_part{"openings",     "embedding", "triangulation",
                       "optimization", "smoothing", "quality"};
   Names expected{"neighbors", "graph", "outliers", "neighbors", "graph", "parts"};
@@ -97,10 +95,7 @@ TEST(StageClock, StagesComeInOrderAndEachCanBeCancelled) {
     expected.insert(expected.end(), {"neighbors", "graph"});
     expected.insert(expected.end(), of_part.begin(), of_part.end());
   }
-  Options options;
-  options.outliers = OutlierMode::Auto;
-  options.parts = PartsMode::Each;
-  options.smoothing = 1;
+  Options options = given("outliers", "auto", "parts", "each", "smoothing", 1);
   Names names;
   options.progress = [&](const Progress& progress) {
     if (names.empty() || names.back() != progress.stage)

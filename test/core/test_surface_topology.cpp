@@ -95,9 +95,7 @@ TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
 }
 
 TEST(SurfaceTopology, NoneIsASphere) {
-  Options options = quick();
-  options.handles = HandleMode::None;
-  const Surface result = surfaceOf(torusCloud(60, 24), options);
+  const Surface result = surfaceOf(torusCloud(60, 24), quick(given("handles", "none")));
   EXPECT_TRUE(isSphereOverAll(result.triangles, 60 * 24));
   EXPECT_TRUE(result.handles.empty());
   EXPECT_EQ(result.sphere.cols(), 60 * 24);
@@ -109,9 +107,7 @@ TEST(SurfaceTopology, HandlesBesideOpenings) {
     const Positions holed = pointsWhere(torus, [&](const Eigen::Vector3d& p) {
       return (p - Eigen::Vector3d(beside, 0.0, 0.0)).norm() > 0.7;
     });
-    Options options;
-    options.surface = SurfaceMode::Open;
-    const Surface result = surfaceOf(holed, options);
+    const Surface result = surfaceOf(holed, given("surface", "open"));
     test::expectSound(result, 1, 1);
     EXPECT_EQ(result.verdict, "A sound mesh with 1 handle and 1 opening.");
     expectSound(surfaceOf(torus), 1);
@@ -123,9 +119,7 @@ TEST(SurfaceTopology, LinkedRingsAreTwoParts) {
   Positions linked = ring;
   linked.row(1).swap(linked.row(2));
   linked.row(0).array() += 1.0;
-  Options options;
-  options.parts = PartsMode::Each;
-  const Result result = reconstruct(horizontally(ring, linked), options);
+  const Result result = reconstruct(horizontally(ring, linked), given("parts", "each"));
   ASSERT_EQ(result.surfaces.size(), 2U);
   for (const Surface& surface : result.surfaces)
     expectSound(surface, 1);
@@ -135,9 +129,7 @@ TEST(SurfaceTopology, ToriThatTouchAndOneSidedSurfacesAreSaidToBeUnsound) {
   Positions tori = horizontally(torusCloud(60, 24), torusCloud(60, 24));
   tori.row(0).tail(60 * 24).array() += 2.82;
   for (const Positions& points : {tori, kleinBottle(60, 30), moebiusBand(160, 12)}) {
-    Options options = quick(sphere());
-    options.handles = HandleMode::Auto;
-    const Surface result = surfaceOf(points, options);
+    const Surface result = surfaceOf(points, given(quick(sphere()), "handles", "auto"));
     EXPECT_TRUE(isSurfaceOverAll(result.triangles, static_cast<Index>(points.cols()),
                                  static_cast<Index>(result.genus())));
     EXPECT_FALSE(result.findings.empty());
@@ -156,9 +148,7 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   EXPECT_EQ(smooth.smoothed.cols(), torus.cols());
   EXPECT_TRUE(smooth.vertex_residuals.empty());
   EXPECT_TRUE(smooth.history.frames.empty());
-  Options consolidated;
-  consolidated.consolidation = ConsolidationMode::Auto;
-  consolidated.outliers = OutlierMode::Auto;
+  const Options consolidated = given("consolidation", "auto", "outliers", "auto");
   const Positions scattered =
       horizontally(withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));
   EXPECT_EQ(surfaceOf(scattered, consolidated).topology.genus, 1);

@@ -70,9 +70,7 @@ TEST(Consolidation, NoiseIsTakenOffAndMeasuredAndLayersBecomeOne) {
   }
   EXPECT_NEAR(consolidate(noisy).report.noise, 0.01, 0.002);
   EXPECT_GT(shortestDistance(consolidate(layers).points), 0.002);
-  Options options;
-  options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = surfaceOf(layers, options);
+  const Surface mesh = surfaceOf(layers, given("consolidation", "auto"));
   EXPECT_TRUE(mesh.self_intersections.empty());
   EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * kPi);
 }
@@ -123,8 +121,7 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   EXPECT_EQ(plain.moved().cols(), 0);
   EXPECT_EQ(plain.consolidation.merged, 0U);
 
-  Options options = sphere();
-  options.consolidation = ConsolidationMode::Auto;
+  Options options = given(sphere(), "consolidation", "auto");
   const Surface mesh = surfaceOf(points, options);
   const Consolidation expected = consolidate(points);
   EXPECT_EQ(mesh.consolidated, expected.points);
@@ -155,9 +152,7 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
 }
 
 TEST(Consolidation, AnyPointsHaveAClosedMesh) {
-  Options options;
-  options.consolidation = ConsolidationMode::Auto;
-  options.intersections = IntersectionMode::Keep;
+  const Options options = given("consolidation", "auto", "intersections", "keep");
   for (const Index n : {4, 19, 20, 25, 100, 400}) {
     const Positions blob = withNoise(Positions::Zero(3, n), 1.0, static_cast<std::uint64_t>(n));
     EXPECT_TRUE(surfaceOf(blob, options).topology.isSphere()) << n;

@@ -207,11 +207,9 @@ TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
 Positions sheet(int rows, double height, double jitter, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-jitter, jitter);
-  Positions points(3, rows * rows);
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < rows; ++column)
-      points.col(row * rows + column) << column + uniform(random), row + uniform(random), height;
-  return points;
+  return gridOf(rows, rows, [&](int row, int column) {
+    return Eigen::Vector3d{column + uniform(random), row + uniform(random), height};
+  });
 }
 
 TEST(LocalDelaunayGraph, SquaresHaveNoDiagonalsAndCloseSheetsAreNotJoinedInside) {
@@ -230,10 +228,7 @@ TEST(LocalDelaunayGraph, SquaresHaveNoDiagonalsAndCloseSheetsAreNotJoinedInside)
 }
 
 TEST(LocalDelaunayGraph, BridgesAreTheClosestPairsWithDifferentEnds) {
-  const Positions left = randomSphere(60, 8);
-  Positions right = randomSphere(60, 9);
-  right.row(0).array() += 10.0;
-  const Positions points = horizontally(left, right);
+  const Positions points = horizontally(randomSphere(60, 8), movedTo(10.0, randomSphere(60, 9)));
   const NeighborGraph result = build(points);
   expectSound(points, result);
   ASSERT_EQ(result.bridges.size(), 3U);
@@ -256,14 +251,13 @@ std::vector<Positions> awkwardClouds() {
   Positions plate = randomSphere(400, 15);
   plate.row(2) *= 1e-4;
   // Two patches and one point between them.
-  Positions other = patch.colwise() + Eigen::Vector3d(12.0, 0.0, 0.0);
-  other = horizontally(Eigen::Vector3d(9.5, 3.5, 0.0), other);
+  const Positions other = horizontally(Eigen::Vector3d(9.5, 3.5, 0.0), movedTo(12.0, patch));
   std::vector<Positions> clouds{
       cubeGrid(3), cubeGrid(7), spiralSphere(500), plate, patch, horizontally(patch, other),
       // Clusters so small that the squares of their distances are near the least there are, or 0.
       horizontally(sphere, 1e-150 * randomSphere(40, 12)),
       horizontally(sphere, 1e-250 * randomSphere(40, 12)),
-      horizontally(sphere, randomSphere(60, 3).colwise() + Eigen::Vector3d(10.0, 0.0, 0.0)),
+      horizontally(sphere, movedTo(10.0, randomSphere(60, 3))),
       horizontally(patch, sheet(8, 0.7, 0.2, 5))};
   for (Index n = 4; n <= 16; ++n)
     clouds.push_back(randomSphere(n, 5));

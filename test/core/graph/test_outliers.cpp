@@ -104,9 +104,8 @@ DeviatingPoints byDefinition(const Positions& points, const NeighborLists& lists
 }
 
 TEST(DeviatingPoints, AreThoseOfTheDefinitionHoweverTheListsAreOrdered) {
-  const Positions points =
-      horizontally(horizontally(randomSphere(600, 4), 1.3 * spiralSphere(9)),
-                   horizontally(1.33 * spiralSphere(9), 1.6 * spiralSphere(5)));
+  const Positions points = horizontally(randomSphere(600, 4), 1.3 * spiralSphere(9),
+                                        1.33 * spiralSphere(9), 1.6 * spiralSphere(5));
   const NeighborLists lists = bruteForceNeighbors(points, 60);
   for (const double sigma : {0.0, 4.0, 12.0, 1000.0}) {
     const DeviatingPoints expected = byDefinition(points, lists, sigma);

@@ -8,14 +8,8 @@ namespace {
 
 using Parts = std::vector<std::vector<Index>>;
 
-Positions movedTo(double x, const Positions& points) {
-  return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
-}
-
 Parts partsOf(const Positions& points, int min_points) {
-  Options options;
-  options.min_points = min_points;
-  return findParts(points, options);
+  return findParts(points, given("min_points", min_points));
 }
 
 TEST(Parts, AreTheSurfacesOfACloudTheLargestFirst) {
@@ -45,7 +39,7 @@ TEST(Parts, HaveMinPointsPositions) {
   EXPECT_EQ(partsOf(points, 41).size(), 1U);
   EXPECT_TRUE(partsOf(points, 301).empty());
   const Positions sphere = spiralSphere(60);
-  const Positions twice = horizontally(horizontally(sphere, sphere), movedTo(4.0, sphere));
+  const Positions twice = horizontally(sphere, sphere, movedTo(4.0, sphere));
   EXPECT_EQ(findParts(twice), (Parts{range(0, 120), range(120, 180)}));
   EXPECT_TRUE(partsOf(twice, 61).empty());
 }
@@ -101,9 +95,8 @@ TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
   others.col(0) = 1.05 * sphere.col(500);  // half a spacing above the surface
   others.col(1) = Eigen::Vector3d(3.0, 1.0, 0.0);
   others.col(2) = Eigen::Vector3d(0.0, 0.0, 0.3);
-  Options options;
-  options.outliers = OutlierMode::None;
-  EXPECT_EQ(findParts(horizontally(sphere, others), options), Parts{range(0, 1001)});
+  EXPECT_EQ(findParts(horizontally(sphere, others), given("outliers", "none")),
+            Parts{range(0, 1001)});
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(StrayPoints, HaveTheirDistanceInSpacings) {
 TEST(StrayPoints, ThatAreNotLeftOutAreVerticesAndReported) {
   const Positions stray = 1.6 * spiralSphere(5);
   const Surface result =
-      surfaceOf(horizontally(horizontally(stray, spiralSphere(800)), stray.leftCols(2)), sphere());
+      surfaceOf(horizontally(stray, spiralSphere(800), stray.leftCols(2)), sphere());
   EXPECT_EQ(result.outliers, (std::vector<Index>{0, 1, 2, 3, 4}));
   EXPECT_EQ(result.vertexCount(), 805U);
   ASSERT_FALSE(result.findings.empty());

@@ -17,8 +17,6 @@ void expectGuarantees(const Case& of, const MeshOptimization& result) {
   EXPECT_EQ(result.intersecting.pairs, findSelfIntersections(of.points, result.triangles));
 }
 
-// --- Meshes that are known -----------------------------------------------------------------------
-
 TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
   const auto expect_cube = [](int cells, int flips, std::uint64_t seed) {
     SCOPED_TRACE(seed);
@@ -69,8 +67,6 @@ TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
             0.2 * fractionBeyondTwoSteps(of.graph, of.triangles));
 }
 
-// --- Any input -----------------------------------------------------------------------------------
-
 TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const Case noisy = noisySphere(200, 0.5, 26);
   for (const auto& [of, is_noisy] :
@@ -86,8 +82,6 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const MeshOptimization result = optimize(noisy, unfinished);
   EXPECT_NE(result.intersecting.pairs, findSelfIntersections(noisy.points, result.triangles));
 }
-
-// --- What changes nothing, and what does ---------------------------------------------------------
 
 TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {
   for (const Index n : {500, 1500}) {

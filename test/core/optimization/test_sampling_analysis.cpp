@@ -9,12 +9,10 @@ namespace {
 
 /// A grid on the side of a cylinder of radius 1.
 Positions cylinderGrid(int around, int along, double spacing_along) {
-  Positions points(3, around * along);
-  for (Index i = 0; i < points.cols(); ++i) {
-    const double angle = 2.0 * kPi * (i % around) / around;
-    points.col(i) << std::cos(angle), std::sin(angle), spacing_along * (i / around);
-  }
-  return points;
+  return gridOf(along, around, [=](int i, int j) {
+    const double angle = 2.0 * kPi * j / around;
+    return Eigen::Vector3d(std::cos(angle), std::sin(angle), spacing_along * i);
+  });
 }
 
 Sampling samplingOf(const Positions& points) {

@@ -5,18 +5,11 @@
 namespace spherical_param::test {
 namespace {
 
-Options filled(FillMode fill) {
-  Options options;
-  options.surface = SurfaceMode::Closed;
-  options.fill = fill;
-  return options;
-}
-
 TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
   const Positions points = pointsWhere(
       spiralSphere(3000), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });
-  const Surface flat = surfaceOf(points, filled(FillMode::Flat));
-  const Surface smooth = surfaceOf(points, filled(FillMode::Smooth));
+  const Surface flat = surfaceOf(points, given("surface", "closed", "fill", "flat"));
+  const Surface smooth = surfaceOf(points, given("surface", "closed", "fill", "smooth"));
   ASSERT_EQ(flat.added_vertices, 0U);
   EXPECT_EQ(flat.filled.cols(), 0);
   const Eigen::Index n = points.cols();

@@ -33,15 +33,14 @@ inline Scene openSphere(Index n, double height) {
 /// graph is that of the whole torus; 2 x ring of its edges cross the cut.
 inline Scene cutTorus(int rings, int ring, double tube_radius) {
   const auto n = static_cast<Index>(rings * ring);
-  Scene torus{Positions(3, n), Triangles(3, 2 * n - 4), {}};
-  for (int r = 0; r < rings; ++r)
-    for (int k = 0; k < ring; ++k) {
-      const double around = 2.0 * kPi * r / rings;
-      const double angle = 2.0 * kPi * k / ring;
-      const double radius = 1.0 + tube_radius * std::cos(angle);
-      torus.points.col(r * ring + k) << radius * std::cos(around), radius * std::sin(around),
-          tube_radius * std::sin(angle);
-    }
+  Scene torus{{}, Triangles(3, 2 * n - 4), {}};
+  torus.points = gridOf(rings, ring, [=](int r, int k) {
+    const double around = 2.0 * kPi * r / rings;
+    const double angle = 2.0 * kPi * k / ring;
+    const double radius = 1.0 + tube_radius * std::cos(angle);
+    return Eigen::Vector3d(radius * std::cos(around), radius * std::sin(around),
+                           tube_radius * std::sin(angle));
+  });
   const Triangles whole = torusTriangles(rings, ring);
   // The last ring of quads makes place for two polygons, cut in zigzag.
   const Index kept = 2 * (n - ring);
@@ -59,10 +58,11 @@ inline Scene cutTorus(int rings, int ring, double tube_radius) {
 
 /// Two spheres, joined by a tube of six triangles.
 inline Scene joinedSpheres(Index n, Index m, double distance) {
-  const Positions b = spiralSphere(m).colwise() + Eigen::Vector3d(distance, 0.0, 0.0);
   const Triangles of_a = hullOf(spiralSphere(n));
   const Triangles of_b = hullOf(spiralSphere(m)).array() + n;
-  Scene scene{horizontally(spiralSphere(n), b), Triangles(3, of_a.cols() + of_b.cols() + 4), {}};
+  Scene scene{horizontally(spiralSphere(n), movedTo(distance, spiralSphere(m))),
+              Triangles(3, of_a.cols() + of_b.cols() + 4),
+              {}};
   const Eigen::Vector3i p = of_a.col(of_a.cols() - 1);
   const Eigen::Vector3i q = of_b.col(of_b.cols() - 1);
   const Eigen::Index tube = of_a.cols() + of_b.cols() - 2;

@@ -15,8 +15,6 @@ SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = 
                          openings, options, 1);
 }
 
-// --- Closed surfaces -----------------------------------------------------------------------------
-
 void expectClosed(const char* what, const Scene& scene) {
   const SurfaceDiagnosis diagnosis = diagnose(scene);
   EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << what;
@@ -82,8 +80,6 @@ TEST(SurfaceDiagnosis, FalseNeighborsOfThinSheetsAreNoHandle) {
   expectClosed("sheets", {points, hull, {graphOfMesh(points, edges), {}, {}}});
 }
 
-// --- Openings ------------------------------------------------------------------------------------
-
 TEST(SurfaceDiagnosis, OpeningMakesASurfaceOpenIfItIsCertainOrLeftOpen) {
   const Scene scene = openSphere(1000, 2.0);
   DiagnosisOptions options;
@@ -107,8 +103,6 @@ TEST(SurfaceDiagnosis, OpeningMakesASurfaceOpenIfItIsCertainOrLeftOpen) {
                     is_fault && (t == 3 || t == 5) ? triangle_mark::filled_hole : 0);
       }
 }
-
-// --- Handles, parts and folds --------------------------------------------------------------------
 
 TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
   for (const int ring : {12, 24}) {
