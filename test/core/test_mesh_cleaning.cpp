@@ -48,7 +48,7 @@ TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
   EXPECT_EQ(surface.inputs.size() + unmeshed.size() + scan.left_out.outliers.size(), 300U);
   for (const Index i : unmeshed)
     EXPECT_EQ(surface.vertexOf(i), -1);
-  const Surface sphere = surfaceOf(points, sphere());
+  const Surface sphere = surfaceOf(points, test::sphere());
   EXPECT_TRUE(isSphereOverAll(sphere.triangles, 300));
   EXPECT_GT(sphere.intersecting_triangles, 0U);
 }

@@ -144,7 +144,7 @@ TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
   EXPECT_TRUE(small.openings[0].is_filled);
   test::expectSound(surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen("auto")), 0, 1);
   // A tube without ends may be one with flat ends.
-  const Surface tube = surfaceOf(tube(20, 40), leftOpen("auto"));
+  const Surface tube = surfaceOf(test::tube(20, 40), leftOpen("auto"));
   test::expectSound(tube, 0, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }

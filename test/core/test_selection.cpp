@@ -65,7 +65,7 @@ TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
   EXPECT_EQ(scan.surface().genus(), 1U);
   EXPECT_EQ(reconstruct(points, given("surface", "closed", "parts", "largest")).verdict,
             "A sound mesh with 1 handle; 1 stray point, 900 points in other parts left out.");
-  const Surface sphere = surfaceOf(points, quick(sphere()));
+  const Surface sphere = surfaceOf(points, quick(test::sphere()));
   EXPECT_TRUE(isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
   EXPECT_EQ(withTopology(paper()).parts, PartsMode::All);
 }
@@ -75,7 +75,7 @@ TEST(Topology, OfWholeObjectsIsASphereInBothWays) {
                                   bentTube(6.0, 1.0, 12).points, twoSpheres(30, 30, 0.5)}) {
     const Result scan = reconstruct(points);
     EXPECT_TRUE(scan.left_out.text().empty());
-    const Triangles sphere = surfaceOf(points, sphere()).triangles;
+    const Triangles sphere = surfaceOf(points, test::sphere()).triangles;
     EXPECT_EQ(scan.surface().triangles, sphere);
     EXPECT_EQ(surfaceOf(points, given("surface", "open")).triangles, sphere);
   }
