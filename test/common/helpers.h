@@ -62,6 +62,17 @@ inline Positions randomSphere(Index n, std::uint64_t seed) {
   return points;
 }
 
+/// Random points in a cap of the given radius around a pole.
+inline Positions cap(Index n, double radius, const Eigen::Vector3d& pole, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-radius, radius);
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) =
+        (pole + Eigen::Vector3d(uniform(random), uniform(random), uniform(random))).normalized();
+  return points;
+}
+
 /// n independent random points in the cube [-1, 1]^3.
 inline Positions randomCube(Index n, std::uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -47,6 +47,14 @@ inline Positions flatPatch(int side) {
   });
 }
 
+/// Points of a plane, a unit apart, of which no four are on a circle.
+inline Positions patchOf(int columns, int rows) {
+  return gridOf(columns, rows, [=](int x, int y) {
+    const int i = x * rows + y;
+    return Eigen::Vector3d(x + 0.01 * (i * i % 7), y + 0.01 * (i * i % 5), 0.0);
+  });
+}
+
 /// The boundary of a mesh, found edge by edge from the triangles alone: each vertex on it and the
 /// next one, with the surface on the left. A vertex that is twice on it has -2.
 inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {

@@ -115,28 +115,19 @@ void addReconstructions(const Add& add) {
   };
   add_of("smoothed", &Inputs::rough, given(watched(), "smoothing", 2));
   add_of("converged", &Inputs::cloud, given("tolerance", 1e-7));
-  Options published = watched(paper());
-  published.paper.max_iterations = 5;
-  for (const EdgeWeights weights :
-       {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive}) {
-    published.paper.weights = weights;
-    add_of("as published", &Inputs::rough, published);
-  }
+  const Options published = given(watched(paper()), "max_iterations", 5);
+  for (const char* const weights : {"uniform", "inverse", "adaptive"})
+    add_of("as published", &Inputs::rough, given(published, "weights", weights));
   add_of("open", &Inputs::holed, given("surface", "open"));
   add_of("filled", &Inputs::holed, given("surface", "closed", "fill", "smooth"));
   add_of("with a handle", &Inputs::torus, {});
-  Options parts;
-  parts.parts = PartsMode::Each;
-  parts.outliers = OutlierMode::Deviation;
-  parts.consolidation = ConsolidationMode::Auto;
-  add_of("in parts", &Inputs::scattered, parts);
+  add_of("in parts", &Inputs::scattered,
+         given("parts", "each", "outliers", 4.0, "consolidation", "auto"));
 }
 
 void addFunctionsOfTheCore(const Add& add) {
-  for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation})
-    add("findOutliers()", 1.0, [mode](const Inputs& in, const Execution& e) {
-      Options options;
-      options.outliers = mode;
+  for (const Options& options : {given("outliers", "auto"), given("outliers", 4.0)})
+    add("findOutliers()", 1.0, [options](const Inputs& in, const Execution& e) {
       return Numbers(findOutliers(in.scattered, with(options, e)));
     });
   add("findParts()", 1.0, [](const Inputs& in, const Execution& e) {
@@ -287,8 +278,6 @@ TEST(Contract, EveryReportCanEndTheWorkAndTheNextCallIsClean) {
   }
 }
 
-// --- Calls at the same time ----------------------------------------------------------------------
-
 /// Expects of some functions what they answer alone, on one thread.
 void expectTheSameTogether(const std::vector<Function>& functions,
                            const std::vector<Inputs>& inputs, int threads) {
@@ -345,8 +334,6 @@ TEST(Concurrency, EndingOneCallLeavesTheOthersAlone) {
   EXPECT_EQ(outcomes, (std::vector<int>{0, 1, 2, 0, 1, 2}));
 }
 
-// --- The same cloud elsewhere --------------------------------------------------------------------
-
 using Faces = std::vector<std::array<Index, 3>>;
 
 /// What a function makes of a cloud, as indices of its points.
@@ -385,15 +372,11 @@ std::vector<Finder> finders() {
   }
   add("openings", sphereWithHoles(2500, 3, 0.3), given("surface", "open"));
   add("handles", plateWithHoles(0.1), {});
-  Options parts;
-  parts.parts = PartsMode::Each;
-  for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation}) {
-    parts.outliers = mode;
-    add("parts and outliers", horizontally(twoSpheres(700, 500, 4.0), 1.5 * spiralSphere(20)),
-        parts);
-  }
-  parts.consolidation = ConsolidationMode::Auto;
-  add("consolidated", withNoise(twoSpheres(700, 500, 4.0), 0.01, 2), parts);
+  const Positions two = twoSpheres(700, 500, 4.0);
+  const Options parts = given("parts", "each", "outliers", 4.0);
+  for (const Options& options : {given(parts, "outliers", "auto"), parts})
+    add("parts and outliers", horizontally(two, 1.5 * spiralSphere(20)), options);
+  add("consolidated", withNoise(two, 0.01, 2), given(parts, "consolidation", "auto"));
   all.push_back({"triangulateSphere()", randomSphere(5000, 1),
                  [](const Positions& of) { return triangulateSphere(of.colwise().normalized()); }});
   return all;

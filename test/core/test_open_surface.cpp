@@ -89,14 +89,10 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   }
   // Patches of two and three rows are no wider than the gap that counts elsewhere.
   for (const int rows : {2, 3}) {
-    Positions narrow(3, 9 * rows);
-    for (int i = 0; i < 9 * rows; ++i)
-      narrow.col(i) << i / rows + 0.01 * (i * i % 7), i % rows + 0.01 * (i * i % 5), 0.0;
-    test::expectSound(surfaceOf(narrow, leftOpen()), 0, 1);
+    test::expectSound(surfaceOf(patchOf(9, rows), leftOpen()), 0, 1);
   }
   // Of a line there is no surface.
-  Positions line = Positions::Zero(3, 50);
-  line.row(0).setLinSpaced(0.0, 1.0);
+  const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(50, 0.0, 1.0);
   EXPECT_THROW(reconstruct(line, leftOpen()), InvalidInput);
 }
 

@@ -12,10 +12,8 @@ namespace {
 TEST(Reconstruct, EllipsoidIsMeshedTrulyByBothMethods) {
   const Positions points = ellipsoid(800);
   std::vector<Options> all = bothMethods();
-  for (const EdgeWeights weights : {EdgeWeights::Uniform, EdgeWeights::InverseLength}) {
-    all.push_back(paper());
-    all.back().paper.weights = weights;
-  }
+  for (const char* const weights : {"uniform", "inverse"})
+    all.push_back(given(paper(), "weights", weights));
   for (const Options& options : all) {
     const Surface result = mesh(points, options);
     expectGuarantees(points, result);
@@ -32,8 +30,7 @@ std::vector<Positions> nastySets() {
   circle.row(2).setZero();
   circle.colwise().normalize();
   sets.push_back(horizontally(circle, Eigen::Vector3d(0.0, 0.0, 0.5)));  // coplanar but one
-  Positions line = Positions::Zero(3, 100);
-  line.row(0).setLinSpaced(0.0, 99.0);
+  const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(100, 0.0, 99.0);
   sets.push_back(horizontally(line, Eigen::Matrix<double, 3, 2>{{5, 7}, {1, 0}, {0, 1}}));
   sets.push_back(horizontally(spiralSphere(200), Eigen::Vector3d(1e9, 0.0, 0.0)));
   sets.push_back(twoSpheres(150, 150, 1e6));

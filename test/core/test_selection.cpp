@@ -119,23 +119,16 @@ TEST(Selection, EverySurfaceIsThatOfItsPointsAlone) {
         }
 }
 
-/// A square of 10 x 10 points, of which there is no closed surface.
-Positions square(double x) {
-  Positions points(3, 100);
-  for (int i = 0; i < 100; ++i)
-    points.col(i) << x + i / 10 + 0.01 * (i * i % 7), i % 10 + 0.01 * (i * i % 5), 0.0;
-  return points;
-}
-
 TEST(Selection, APartThatCannotBeMeshedIsLeftOutUnlessNoneCanBe) {
+  const Positions square = patchOf(10, 10);  // of which there is no closed surface
   const Options options = given("parts", "each", "surface", "closed");
-  const Result result = reconstruct(horizontally(square(9.0), spiralSphere(80)), options);
+  const Result result = reconstruct(horizontally(movedTo(9.0, square), spiralSphere(80)), options);
   ASSERT_EQ(result.surfaces.size(), 1U);
   EXPECT_EQ(result.surface().inputs.front(), 100);
   EXPECT_EQ(result.left_out.other_parts.size(), 100U);
   ASSERT_EQ(result.failures.size(), 1U);
   EXPECT_EQ(result.failures[0].find("1 part (100 points) cannot be meshed: all points lie"), 0U);
-  EXPECT_THROW(reconstruct(horizontally(square(0.0), square(30.0)), options), InvalidInput);
+  EXPECT_THROW(reconstruct(horizontally(square, movedTo(30.0, square)), options), InvalidInput);
 }
 
 TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {

@@ -1,14 +1,8 @@
 #include "exact_predicates.h"
 
-#include <gtest/gtest.h>
+#include "helpers.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
+#include <gtest/gtest.h>
 
 namespace spherical_param::internal {
 namespace {

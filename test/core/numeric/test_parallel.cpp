@@ -1,24 +1,20 @@
 #include "parallel.h"
 
+#include "helpers.h"
+
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <mutex>
 #include <new>
-#include <set>
 #include <stdexcept>
-#include <thread>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {

@@ -26,24 +26,13 @@ TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
   EXPECT_EQ(mortonOrder(points), flat);
 }
 
-/// Points of a cap around (0.6, 0, 0.8).
-Positions cap(Index n, double radius) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) =
-        Eigen::Vector3d(0.6 + radius * uniform(random), radius * uniform(random), 0.8).normalized();
-  return points;
-}
-
 // Also in caps that are smaller than the cells of the curve.
 TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
   const std::vector<std::pair<Positions, double>> clouds{
       {randomSphere(2000, 2), std::sqrt(4.0 * kPi)},
       {randomSphere(50000, 2), std::sqrt(4.0 * kPi)},
-      {cap(20000, 1e-6), 2e-6},
-      {cap(20000, 1e-12), 2e-12}};
+      {cap(20000, 1e-6, {0.6, 0.0, 0.8}, 3), 2e-6},
+      {cap(20000, 1e-12, {0.6, 0.0, 0.8}, 3), 2e-12}};
   for (const auto& [points, width] : clouds) {
     const std::vector<Index> order = insertionOrder(points);
     // The last round has 7 of 8 points; on average, one is less than two spacings from the one

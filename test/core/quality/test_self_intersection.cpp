@@ -288,16 +288,17 @@ std::size_t octantsOf(const Pairs& pairs, const Mesh& mesh) {
   return octants.size();
 }
 
+IntersectingPairs foundIn(const Mesh& mesh, std::size_t most, int threads = 1) {
+  return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
+}
+
 TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
   for (const Index small : {6000, 140000}) {
     const Mesh mesh = unevenSoup(3, small, 0, 0);
     const Pairs all = pairsOf(mesh);
-    const auto found = [&](std::size_t most, int threads) {
-      return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
-    };
-    const IntersectingPairs sample = found(200, 1);
+    const IntersectingPairs sample = foundIn(mesh, 200);
     EXPECT_TRUE(sample.is_sample);
-    EXPECT_EQ(sample.pairs, found(200, 3).pairs);
+    EXPECT_EQ(sample.pairs, foundIn(mesh, 200, 3).pairs);
     EXPECT_GT(countTriangles(sample.pairs), 200U);
     EXPECT_LT(sample.pairs.size(), all.size());
     EXPECT_EQ(octantsOf(sample.pairs, mesh), 8U);
@@ -305,16 +306,13 @@ TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
   }
   const Mesh mesh = unevenSoup(3, 30000, 3000, 4);
   const Pairs all = pairsOf(mesh);
-  const auto found = [&](std::size_t most, int threads) {
-    return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
-  };
   const std::size_t count = countTriangles(all);
   ASSERT_GT(count, 5000U);
-  EXPECT_EQ(found(count, 1).pairs, all);
-  EXPECT_FALSE(found(count, 1).is_sample);
+  EXPECT_EQ(foundIn(mesh, count).pairs, all);
+  EXPECT_FALSE(foundIn(mesh, count).is_sample);
   // Whoever has fewer pairs is better, but a sample never is.
-  EXPECT_FALSE(found(200, 1).areFewerThan(found(count, 1)));
-  EXPECT_TRUE(found(count, 1).areFewerThan(found(200, 1)));
+  EXPECT_FALSE(foundIn(mesh, 200).areFewerThan(foundIn(mesh, count)));
+  EXPECT_TRUE(foundIn(mesh, count).areFewerThan(foundIn(mesh, 200)));
 }
 
 TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMesh) {

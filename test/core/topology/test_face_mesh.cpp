@@ -98,9 +98,7 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
 }
 
 TEST(FaceMesh, IsNoneWithoutFaces) {
-  Positions line = Positions::Zero(3, 20);
-  for (Eigen::Index i = 0; i < 20; ++i)
-    line(0, i) = static_cast<double>(i);
+  const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(20, 0.0, 19.0);
   EXPECT_FALSE(meshOf(line, delaunayGraph(line), 0));
 }
 

@@ -19,17 +19,6 @@ inline void expectSound(const Positions& directions, const SphereDelaunay& resul
   expectSound(directions, result.triangles);
 }
 
-/// Random points in a cap of the given radius around a pole.
-inline Positions cap(Index n, double radius, const Eigen::Vector3d& pole, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(-radius, radius);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) =
-        (pole + Eigen::Vector3d(uniform(random), uniform(random), uniform(random))).normalized();
-  return points;
-}
-
 /// n points on the circle of latitude of height z; the angle of point i is that of i turns of n.
 inline Positions latitude(Index n, double z) {
   Positions points(3, n);
