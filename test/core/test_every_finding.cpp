@@ -48,8 +48,7 @@ const std::map<std::string, Positions>& clouds() {
        [] {
          Positions cloud(3, 0);
          for (int i = 0; i < 8; ++i)
-           cloud = horizontally(cloud,
-                                spiralSphere(200).colwise() + Eigen::Vector3d(3.0 * i, 0.0, 0.0));
+           cloud = horizontally(cloud, movedTo(3.0 * i, spiralSphere(200)));
          return cloud;
        }()},
       {"two too small", twoSpheres(30, 30, 6.0)},

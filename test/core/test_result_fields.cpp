@@ -130,7 +130,7 @@ OrderedPoints reorderedNodes() {
   return nodes;
 }
 
-TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
+TEST(ResultFields, QuantitiesAreScaledByTheirPowersAndIndicesAreThoseOfVertices) {
   Surface result = onNodes();
   OrderedPoints nodes = reorderedNodes();
   toInput(nodes, result);
@@ -142,12 +142,6 @@ TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
   // 21 of measures, 5 of smoothing, 12 of smoothed points, 7, 4, 4 and 5 of opening, loop of a
   // handle, torn handle and bridge.
   EXPECT_EQ(quantities, 58U);
-}
-
-TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
-  Surface result = onNodes();
-  OrderedPoints nodes = reorderedNodes();
-  toInput(nodes, result);
   using Indices = std::vector<Index>;
   EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
   EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));

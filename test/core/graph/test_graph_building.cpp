@@ -60,16 +60,7 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
           edges.emplace_back(i, j);
     const std::vector<Bridge> bridges = articulationBridges(points, unitGraph(40, edges), 3);
     ASSERT_EQ(bridges.size(), 3U);
-    std::set<Index> taken{1};
-    for (const Bridge& bridge : bridges) {
-      double shortest = 1e300;
-      for (Index i = 0; i < 40; ++i)
-        for (Index j = 0; j < 40; ++j)
-          if (is_inner(i) && !is_inner(j) && taken.count(i) == 0 && taken.count(j) == 0)
-            shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
-      EXPECT_DOUBLE_EQ(bridge.length, shortest);
-      taken.insert({bridge.from, bridge.to});
-    }
+    expectClosestPairs(points, bridges, is_inner, {1});
   }
 }
 

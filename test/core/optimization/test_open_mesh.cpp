@@ -23,11 +23,8 @@ struct DoublePyramid {
   }
 
   OpenMesh open(std::vector<std::vector<Index>> loops) {
-    for (std::vector<Index>& loop : loops) {
-      Opening opening;
-      opening.loop = std::move(loop);
-      openings.openings.push_back(opening);
-    }
+    for (std::vector<Index>& loop : loops)
+      openings.openings.emplace_back().loop = std::move(loop);
     return openMesh(points, triangles, OpenPlaces(points, graph, openings));
   }
 
@@ -113,9 +110,7 @@ TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
   pyramid.openings.spacing.assign(10, 1.0);
   for (const Index v : {0, 4, 8})
     pyramid.openings.spacing[v] = 0.3;
-  Opening opening;
-  opening.loop = {0, 1, 8};
-  pyramid.openings.openings.push_back(opening);
+  pyramid.openings.openings.emplace_back().loop = {0, 1, 8};
   for (Index v = 0; v < 10; ++v) {
     for (Index w = 0; w < 10; ++w)
       if (v != w)
