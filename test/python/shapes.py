@@ -1,6 +1,19 @@
 """Clouds, and what a mesh is, without anything of the package that is tested."""
 
+import tempfile
+import unittest
+from pathlib import Path
+
 import numpy as np
+
+
+class InFolder(unittest.TestCase):
+    """Each test has an empty folder."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
 
 
 def directions(count, seed=20040602):
@@ -55,12 +68,16 @@ def colors_of(points):
 
 def record(points, colors=None, normals=None):
     """The same as a structured array."""
-    fields = list(zip("xyz", points.T))
+    columns = dict(zip("xyz", points.T))
     if colors is not None:
-        fields += zip(("red", "green", "blue"), colors.T)
+        columns.update(zip(("red", "green", "blue"), colors.T))
     if normals is not None:
-        fields += zip(("nx", "ny", "nz"), normals.T)
-    array = np.empty(len(points), dtype=[(name, column.dtype) for name, column in fields])
-    for name, column in fields:
+        columns.update(zip(("nx", "ny", "nz"), normals.T))
+    return structured(**columns)
+
+
+def structured(**columns):
+    array = np.empty(len(columns["x"]), dtype=[(name, column.dtype) for name, column in columns.items()])
+    for name, column in columns.items():
         array[name] = column
     return array

@@ -1,10 +1,8 @@
 """What reconstruct() takes besides an array, with colours and normals."""
 
-import tempfile
 import types
 import unittest
 from importlib import util
-from pathlib import Path
 
 import numpy as np
 import shapes
@@ -23,7 +21,7 @@ def write_pcd(path, viewpoint="0 0 0 1 0 0 0", **columns):
     np.savetxt(path, np.column_stack(values), fmt=form, header=header, comments="")
 
 
-class Clouds(unittest.TestCase):
+class Clouds(shapes.InFolder):
     @classmethod
     def setUpClass(cls):
         cls.points = shapes.ellipsoid(300).astype(np.float32).astype(float)
@@ -32,11 +30,6 @@ class Clouds(unittest.TestCase):
         cls.normals = (cls.points / [1.0, 4.0, 0.49]).astype(np.float32).astype(float)
         cls.normals /= np.linalg.norm(cls.normals, axis=1, keepdims=True)
         cls.expected = sp.reconstruct(cls.points)
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
 
     def check(self, cloud, colors=True, normals=True, atol=0.0):
         mesh = sp.reconstruct(cloud)
@@ -55,10 +48,10 @@ class Clouds(unittest.TestCase):
         names = ("x", "y", "z", "rgb", "normal_x", "normal_y", "normal_z")
         values = (*self.points.T, self.packed, *self.normals.T)
         write_pcd(self.folder / "a.pcd", **dict(zip(names, values)))
-        for name in ("a.ply", "a.obj"):
-            source.write(self.folder / name)
         for name in ("a.ply", "a.obj", "a.pcd"):
             with self.subTest(name):
+                if name != "a.pcd":
+                    source.write(self.folder / name)
                 self.check(self.folder / name, atol=1e-6)
         np.savetxt(self.folder / "a.xyz", self.points, fmt="%.17g")
         self.check(str(self.folder / "a.xyz"), colors=False, normals=False)
@@ -87,11 +80,8 @@ class Clouds(unittest.TestCase):
 
     def test_coordinates_too_large_for_a_format_are_written_less_an_offset(self):
         far = sp.reconstruct(self.points + [500000, 5400000, 0])
-        for name, given, offset in (
-            ("a.ply", None, (0, 0, 0)),
-            ("a.glb", None, (500000, 5400000, 0)),
-            ("b.ply", (1, 2, 3), (1, 2, 3)),
-        ):
+        for name, given, offset in (("a.ply", None, (0, 0, 0)), ("a.glb", None, (500000, 5400000, 0)),
+                                    ("b.ply", (1, 2, 3), (1, 2, 3))):  # fmt: skip
             self.assertEqual(far.write(self.folder / name, offset=given), offset)
         moved = sp.reconstruct(self.folder / "b.ply").vertices
         np.testing.assert_allclose(moved, far.vertices - [1, 2, 3], rtol=0, atol=1e-8)
@@ -125,11 +115,7 @@ class Clouds(unittest.TestCase):
         renamed.dtype.names = ("x", "y", "z", "r", "g", "b", "normal_x", "normal_y", "normal_z")
         self.check(renamed)
         for colors in (self.packed, self.packed.view(np.float32)):
-            fields = dict(zip(("x", "y", "z", "rgb"), (*self.points.T, colors)))
-            cloud = np.zeros(300, dtype=[(name, column.dtype) for name, column in fields.items()])
-            for name, column in fields.items():
-                cloud[name] = column
-            self.check(cloud, normals=False)
+            self.check(shapes.structured(**dict(zip("xyz", self.points.T)), rgb=colors), normals=False)
         self.check(shapes.record(self.points, self.colors / 255.0), normals=False)
         for wrong in (self.colors.astype(int) - 1, self.colors / 100.0):
             with self.assertRaisesRegex(sp.InvalidInput, "colours of .* out of range; give int"):
@@ -158,9 +144,7 @@ class Clouds(unittest.TestCase):
 
     def test_clouds_of_trimesh_are_taken_by_their_attributes(self):
         # What they have in trimesh 4, which Debian 12 does not have.
-        visual = types.SimpleNamespace(
-            kind="vertex", vertex_colors=np.insert(self.colors, 3, 255, axis=1)
-        )
+        visual = types.SimpleNamespace(kind="vertex", vertex_colors=np.insert(self.colors, 3, 255, axis=1))
         for attributes in ({}, {"visual": visual}):
             cloud = type("PointCloud", (), {"__module__": "trimesh.points"})()
             vars(cloud).update(vertices=self.points, **attributes)

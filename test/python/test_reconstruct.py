@@ -2,10 +2,8 @@
 
 import inspect
 import pickle
-import tempfile
 import unittest
 from fractions import Fraction
-from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -21,7 +19,7 @@ OTHERS = {
 }
 
 
-class Mesh(unittest.TestCase):
+class Mesh(shapes.InFolder):
     def test_the_mesh_and_its_numbers_are_those_of_the_arrays(self):
         points = shapes.ellipsoid(600)
         mesh = sp.reconstruct(points, smoothing=5)
@@ -57,16 +55,10 @@ class Mesh(unittest.TestCase):
         wide[:, 1:6:2] = points
         read_only = points.copy()
         read_only.flags.writeable = False
-        for name, same in {
-            "single": points.astype(np.float32),
-            "fortran": np.asfortranarray(points),
-            "strided": wide[:, 1:6:2],
-            "lists": points.tolist(),
-            "fractions": [[Fraction(x) for x in row] for row in points.tolist()],
-            "big-endian": points.astype(">f8"),
-            "read-only": read_only,
-        }.items():
-            with self.subTest(name):
+        fractions = [[Fraction(x) for x in row] for row in points.tolist()]
+        for same in (points.astype(np.float32), np.asfortranarray(points), wide[:, 1:6:2], points.tolist(),
+                     fractions, points.astype(">f8"), read_only):  # fmt: skip
+            with self.subTest(type(same), dtype=getattr(same, "dtype", None)):
                 mesh = sp.reconstruct(same)
                 self.assertEqual(mesh.triangles.tobytes(), expected.triangles.tobytes())
                 self.assertEqual(mesh.sphere.tobytes(), expected.sphere.tobytes())
@@ -96,14 +88,13 @@ class Mesh(unittest.TestCase):
         all_marks = type(both)([mesh, *both])._export_added()
         np.testing.assert_array_equal(all_marks, np.concatenate([marks, np.zeros(100)]))
         record = np.dtype([("floats", "<f4", 6), ("added", "u1")])  # with normals
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder, "mesh.ply")
-            mesh.write(path)
-            header, _, body = path.read_bytes().partition(b"end_header\n")
-            self.assertIn(b"\nproperty uchar added\n", header)
-            np.testing.assert_array_equal(np.frombuffer(body, record, len(marks))["added"], marks)
-            both.write(path)
-            self.assertNotIn(b"added", path.read_bytes())
+        path = self.folder / "mesh.ply"
+        mesh.write(path)
+        header, _, body = path.read_bytes().partition(b"end_header\n")
+        self.assertIn(b"\nproperty uchar added\n", header)
+        np.testing.assert_array_equal(np.frombuffer(body, record, len(marks))["added"], marks)
+        both.write(path)
+        self.assertNotIn(b"added", path.read_bytes())
         with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
             sp.sphere_map(mesh)
 
@@ -273,7 +264,7 @@ class Outliers(unittest.TestCase):
         np.testing.assert_array_equal(sp.reconstruct(cloud, topology="sphere").outliers, [2001, 2002, 2003])
 
 
-class Parts(unittest.TestCase):
+class Parts(shapes.InFolder):
     """Rows 1 to 200 are small, 201 to 600 large, 601 is stray, 0 is not finite."""
 
     large, small = shapes.ellipsoid(400), shapes.ellipsoid(200) + [9.0, 0.0, 0.0]
@@ -298,9 +289,8 @@ class Parts(unittest.TestCase):
         joined = np.concatenate([both[0].triangles, both[1].triangles + 400])
         np.testing.assert_array_equal(both.triangles, joined)
         self.assertEqual((both.normals.shape, both.colors), ((600, 3), None))
-        with tempfile.TemporaryDirectory() as folder:
-            both.write(Path(folder, "both.obj"))
-            np.testing.assert_array_equal(shapes.faces_of(Path(folder, "both.obj")), joined)
+        both.write(self.folder / "both.obj")
+        np.testing.assert_array_equal(shapes.faces_of(self.folder / "both.obj"), joined)
         self.check(both[0], 201, self.large)
         self.check(both[1], 1, self.small)
         self.check(sp.reconstruct(self.cloud, parts="largest"), 201, self.large)
@@ -322,9 +312,7 @@ class Parts(unittest.TestCase):
     def test_findings_can_be_pasted(self):
         mesh = sp.reconstruct(np.concatenate([self.small[:100], self.large]), topology="sphere")
         finding = next(finding for finding in mesh.findings if finding.option == "topology")
-        self.assertEqual(
-            str(finding), '2 separate parts (100 and 400 points): try topology="scan"'
-        )
+        self.assertEqual(str(finding), '2 separate parts (100 and 400 points): try topology="scan"')
         for value, text in (("1e-8", "1e-8"), ("5", "5"), ("auto", '"auto"')):
             finding = sp.Finding("a text", "option", value, False, False)
             self.assertEqual(str(finding), f"a text: try option={text}")

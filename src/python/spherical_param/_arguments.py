@@ -39,8 +39,7 @@ def _numbers(name: str, value: ArrayLike, kinds: str, remedy: str) -> NDArray[An
     for attribute in ("points", "vertices"):
         if array.dtype.kind == "O" and hasattr(value, attribute):
             raise InvalidInput(
-                f"{name} has the unknown type {type(value).__name__}; pass "
-                f"np.asarray(pcd.{attribute})"
+                f"{name} has the unknown type {type(value).__name__}; pass np.asarray(pcd.{attribute})"
             )
     if array.dtype.kind not in kinds:
         raise InvalidInput(f"{name} is an array of {array.dtype}; give an array of {remedy}")
@@ -70,9 +69,7 @@ def triangle_indices(name: str, value: ArrayLike) -> IndexArray:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
-def integer(
-    name: str, value: SupportsIndex, least: int = -(2**31), most: int = 2**31 - 1
-) -> int:
+def integer(name: str, value: SupportsIndex, least: int = -(2**31), most: int = 2**31 - 1) -> int:
     """An integer of a range, or of the range that the core can check."""
     try:
         number = operator.index(value)

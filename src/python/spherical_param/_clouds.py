@@ -22,13 +22,11 @@ class HasPoints(Protocol):
     @property
     def points(self) -> Any: ...
 
-
 class HasVertices(Protocol):
     """A mesh of Open3D, or a point cloud or mesh of trimesh."""
 
     @property
     def vertices(self) -> Any: ...
-
 
 #: An array, a file, or a cloud of another library.
 CloudLike = Union[ArrayLike, os.PathLike[str], HasPoints, HasVertices]
@@ -52,12 +50,7 @@ class Cloud:
         return {"normals": self.normals, "viewpoint": self.viewpoint, "unused": self.unused}
 
 
-def read(
-    name: str,
-    value: Any,
-    progress: Optional[ProgressFunction] = None,
-    columns: Optional[str] = None,
-) -> Cloud:
+def read(name: str, value: Any, progress: Optional[ProgressFunction] = None, columns: Optional[str] = None) -> Cloud:
     """The cloud that a caller gave as ``name``."""
     if isinstance(value, (str, bytes, os.PathLike)):
         fields = _core.read_cloud(os.fsencode(value), columns=columns, progress=progress)
@@ -99,8 +92,7 @@ def _of_fields(name: str, value: NDArray[Any]) -> Cloud:
     points = columns(("x", "y", "z"))
     if points is None:
         raise InvalidInput(
-            f"{name} is a structured array with the fields {', '.join(known)}; give one with x, y "
-            "and z"
+            f"{name} is a structured array with the fields {', '.join(known)}; give one with x, y and z"
         )
     colors = columns(("red", "green", "blue"), ("r", "g", "b"))
     packed = next((field for field in ("rgb", "rgba") if field in known), None)

@@ -107,7 +107,4 @@ else:
             return None if value is None else globals()[of](**make(of, value))
 
         structs = {field["name"]: field["struct"] for field in _ROWS[name]["fields"]}
-        return {
-            key: made(structs[key], value) if structs[key] else value
-            for key, value in fields.items()
-        }
+        return {key: made(structs[key], value) if structs[key] else value for key, value in fields.items()}

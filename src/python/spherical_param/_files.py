@@ -25,9 +25,7 @@ def vertex_normals(points: FloatArray, triangles: IndexArray) -> FloatArray:
         angles = np.arctan2(lengths, (a * b).sum(axis=1))
         weights = np.divide(angles, lengths, out=np.zeros_like(angles), where=lengths > 0)
         for axis in range(3):
-            sums[:, axis] += np.bincount(
-                triangles[:, k], weights=weights * normals[:, axis], minlength=len(points)
-            )
+            sums[:, axis] += np.bincount(triangles[:, k], weights=weights * normals[:, axis], minlength=len(points))
     lengths = np.linalg.norm(sums, axis=1, keepdims=True)
     return np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0)
 
@@ -45,7 +43,6 @@ class MeshExport:
         def normals(self) -> FloatArray: ...
         @property
         def colors(self) -> Optional[ByteArray]: ...
-
     def _export_points(self) -> FloatArray:
         """The points that the mesh has elsewhere."""
         return self.vertices
@@ -66,11 +63,7 @@ class MeshExport:
         import trimesh
 
         return trimesh.Trimesh(
-            self._export_points(),
-            self.triangles,
-            vertex_normals=self.normals,
-            vertex_colors=self.colors,
-            process=False,
+            self._export_points(), self.triangles, vertex_normals=self.normals, vertex_colors=self.colors, process=False
         )
 
     def to_open3d(self) -> Any:
@@ -78,8 +71,7 @@ class MeshExport:
         import open3d
 
         mesh = open3d.geometry.TriangleMesh(
-            open3d.utility.Vector3dVector(self._export_points()),
-            open3d.utility.Vector3iVector(self.triangles),
+            open3d.utility.Vector3dVector(self._export_points()), open3d.utility.Vector3iVector(self.triangles)
         )
         mesh.vertex_normals = open3d.utility.Vector3dVector(self.normals)
         if self.colors is not None:
@@ -93,15 +85,10 @@ class MeshExport:
         data: dict[str, Any] = {"normals": self.normals}
         if self.colors is not None:
             data["colors"] = self.colors
-        return meshio.Mesh(
-            self._export_points(), [("triangle", self.triangles)], point_data=data
-        )
+        return meshio.Mesh(self._export_points(), [("triangle", self.triangles)], point_data=data)
 
     def write(
-        self,
-        path: Union[str, os.PathLike[str]],
-        *,
-        offset: Optional[tuple[float, float, float]] = None,
+        self, path: Union[str, os.PathLike[str]], *, offset: Optional[tuple[float, float, float]] = None
     ) -> tuple[float, float, float]:
         """Write the mesh into a file: .ply, .obj, .vtk, .glb, .stl or .off, with what it has room for.
 
@@ -132,14 +119,9 @@ class MeshExport:
         """
         added = self._export_added()
         x, y, z = _core.write_mesh(
-            os.fsencode(path),
-            np.ascontiguousarray(self._export_points()),
-            np.ascontiguousarray(self.triangles),
-            np.ascontiguousarray(self.normals),
-            self.colors,
-            added if added is not None and added.any() else None,
-            self._export_scalars(),
-            offset,
+            os.fsencode(path), np.ascontiguousarray(self._export_points()),
+            np.ascontiguousarray(self.triangles), np.ascontiguousarray(self.normals), self.colors,
+            added if added is not None and added.any() else None, self._export_scalars(), offset,
         )
         return x, y, z
 
@@ -159,9 +141,7 @@ class MeshExport:
                 import pyvista
 
                 faces = np.insert(self.triangles, 0, 3, axis=1)
-                pyvista.PolyData(self._export_points(), faces.ravel()).plot(
-                    scalars=self.colors, rgb=True
-                )
+                pyvista.PolyData(self._export_points(), faces.ravel()).plot(scalars=self.colors, rgb=True)
                 return
         self._plot()
 

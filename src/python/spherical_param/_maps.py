@@ -18,16 +18,8 @@ from ._progress import Progress, listening
 from ._results import Result
 
 __all__ = [
-    "Distortion",
-    "Remeshed",
-    "SphereMap",
-    "SphereMapLevel",
-    "Statistics",
-    "TextureCoordinates",
-    "measure_map_distortion",
-    "remesh",
-    "sphere_map",
-    "texture_coordinates",
+    "Distortion", "Remeshed", "SphereMap", "SphereMapLevel", "Statistics", "TextureCoordinates",
+    "measure_map_distortion", "remesh", "sphere_map", "texture_coordinates",
 ]
 
 GridName = Literal["icosahedral", "octahedral", "even"]
@@ -82,9 +74,7 @@ class SphereMap:
     def _arrays(self) -> tuple[FloatArray, IndexArray, FloatArray, FloatArray]:
         return self.vertices, self.triangles, self.directions, self.caps
 
-    def interpolate(
-        self, values: ArrayLike, triangles: IndexArray, weights: FloatArray
-    ) -> FloatArray:
+    def interpolate(self, values: ArrayLike, triangles: IndexArray, weights: FloatArray) -> FloatArray:
         """Values of the vertices, (v,) or (v, c), at places in ``triangles``: (w,) or (w, c)."""
         corners = np.asarray(values, dtype=np.float64)[self.triangles[triangles]]
         places: FloatArray = np.einsum("ij...,ij->i...", corners, weights)
@@ -107,44 +97,33 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
 
 def _sphere(mesh: Result) -> FloatArray:
     if mesh.added_vertices:
-        raise InvalidInput(
-            "the mesh has no map to one sphere: vertices were added; give reconstruct() "
-            'fill="flat", which adds none'
-        )
-    if mesh.has_certain_triangles_only:
-        raise InvalidInput(
-            "the mesh has no map to one sphere: it is a tangle; give reconstruct() "
-            'topology="sphere", which maps it as it is'
-        )
-    if mesh.sphere is None:
+        problem = 'vertices were added; give reconstruct() fill="flat", which adds none'
+    elif mesh.has_certain_triangles_only:
+        problem = 'it is a tangle; give reconstruct() topology="sphere", which maps it as it is'
+    elif mesh.sphere is None:
         count = mesh.topology.genus or 0
         what = f"has {count} handle{'s' * (count > 1)}" if count else "was glued from several"
-        raise InvalidInput(
-            f"the mesh has no map to one sphere: it {what}; give reconstruct() "
-            'handles="none", which cuts them'
-        )
-    return mesh.sphere
+        problem = f'it {what}; give reconstruct() handles="none", which cuts them'
+    else:
+        return mesh.sphere
+    raise InvalidInput(f"the mesh has no map to one sphere: {problem}")
 
 
 def _mesh(
-    mesh: Union[Result, SphereMap, ArrayLike],
-    triangles: Optional[ArrayLike],
-    sphere: Optional[ArrayLike],
+    mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike], sphere: Optional[ArrayLike]
 ) -> tuple[FloatArray, IndexArray, FloatArray]:
     """Vertices, triangles and directions of what a function was given."""
     if isinstance(mesh, (Result, SphereMap)):
         if triangles is not None or sphere is not None:
             raise InvalidInput(
-                f"triangles and sphere were given beside a {type(mesh).__name__}, which has its "
-                "own; leave them out"
+                f"triangles and sphere were given beside a {type(mesh).__name__}, which has its own; leave them out"
             )
         if isinstance(mesh, SphereMap):
             return mesh.vertices, mesh.triangles, mesh.directions
         return mesh._export_points(), mesh.triangles, _sphere(mesh)
     if triangles is None or sphere is None:
         raise InvalidInput(
-            "points were given without triangles and sphere; give all three, or the Result of "
-            "reconstruct()"
+            "points were given without triangles and sphere; give all three, or the Result of reconstruct()"
         )
     return (
         arguments.positions("points", mesh),
@@ -154,14 +133,9 @@ def _mesh(
 
 
 def sphere_map(
-    mesh: Union[Result, SphereMap, ArrayLike],
-    triangles: Optional[ArrayLike] = None,
-    sphere: Optional[ArrayLike] = None,
-    *,
-    area_weight: SupportsFloat = 0.85,
-    sweeps: SupportsIndex = 15,
-    threads: SupportsIndex = 0,
-    progress: Progress = None,
+    mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None, *, area_weight: SupportsFloat = 0.85, sweeps: SupportsIndex = 15,
+    threads: SupportsIndex = 0, progress: Progress = None,
 ) -> SphereMap:
     """Make a map of low distortion from a mesh to the sphere: one to one, no triangle flipped.
 
@@ -181,9 +155,7 @@ def sphere_map(
         Of areas (1) against angles (0).
     sweeps : int, 0 to 1000
         Sweeps of each level, at most; 0: the map is only made valid.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : True, or callable(stage, fraction)
+    threads, progress
         As for ``reconstruct``; the stage is "map".
 
     Raises
@@ -195,32 +167,21 @@ def sphere_map(
     points, indices, start = _mesh(mesh, triangles, sphere)
     with listening(progress) as listener:
         fields = _core.sphere_map(
-            points,
-            indices,
-            start,
-            area_weight=arguments.real("area_weight", area_weight),
-            sweeps=arguments.integer("sweeps", sweeps),
-            threads=arguments.thread_count(threads),
+            points, indices, start, area_weight=arguments.real("area_weight", area_weight),
+            sweeps=arguments.integer("sweeps", sweeps), threads=arguments.thread_count(threads),
             progress=listener,
         )
     return SphereMap(
-        vertices=points.copy(),
-        triangles=indices.copy(),
-        directions=fields["sphere"],
-        caps=fields["caps"],
-        distortion=_distortion(fields["distortion"]),
-        before=_distortion(fields["before"]),
+        vertices=points.copy(), triangles=indices.copy(), directions=fields["sphere"], caps=fields["caps"],
+        distortion=_distortion(fields["distortion"]), before=_distortion(fields["before"]),
         levels=tuple(SphereMapLevel(**level) for level in fields["levels"]),
         colors=mesh.colors if isinstance(mesh, (Result, SphereMap)) else None,
     )
 
 
 def measure_map_distortion(
-    mesh: Union[Result, SphereMap, ArrayLike],
-    triangles: Optional[ArrayLike] = None,
-    sphere: Optional[ArrayLike] = None,
-    *,
-    threads: SupportsIndex = 0,
+    mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None, *, threads: SupportsIndex = 0,
 ) -> Distortion:
     """Measure how far a map from a mesh to the unit sphere is from an isometry.
 
@@ -238,9 +199,7 @@ def measure_map_distortion(
     """
     points, indices, directions = _mesh(mesh, triangles, sphere)
     return _distortion(
-        _core.measure_map_distortion(
-            points, indices, directions, threads=arguments.thread_count(threads)
-        )
+        _core.measure_map_distortion(points, indices, directions, threads=arguments.thread_count(threads))
     )
 
 
@@ -288,8 +247,7 @@ class Remeshed(MeshExport):
         array = np.asarray(values)
         if array.dtype.kind not in "biuf" or array.ndim not in (1, 2):
             raise InvalidInput(
-                f"values have the type {array.dtype} and the shape {array.shape}; give real "
-                "numbers, (v,) or (v, c)"
+                f"values have the type {array.dtype} and the shape {array.shape}; give real numbers, (v,) or (v, c)"
             )
         if len(array) != len(self.map.vertices):
             raise InvalidInput(
@@ -306,18 +264,10 @@ class Remeshed(MeshExport):
 
 
 def remesh(
-    mesh: Union[Result, SphereMap, ArrayLike],
-    triangles: Optional[ArrayLike] = None,
-    sphere: Optional[ArrayLike] = None,
-    *,
-    grid: GridName = "icosahedral",
-    points: Optional[SupportsIndex] = None,
-    fit: FitName = "smooth",
-    area_weight: SupportsFloat = 0.5,
-    sweeps: SupportsIndex = 40,
-    seed: SupportsIndex = 1,
-    threads: SupportsIndex = 0,
-    progress: Progress = None,
+    mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None, *, grid: GridName = "icosahedral",
+    points: Optional[SupportsIndex] = None, fit: FitName = "smooth", area_weight: SupportsFloat = 0.5,
+    sweeps: SupportsIndex = 40, seed: SupportsIndex = 1, threads: SupportsIndex = 0, progress: Progress = None,
 ) -> Remeshed:
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
@@ -341,9 +291,7 @@ def remesh(
         ``SphereMap``.
     seed : int, 0 to 2**32 - 1
         Of an even cloud.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : True, or callable(stage, fraction)
+    threads, progress
         As for ``reconstruct``; the stages are "map", "surface", "resample", "untangle" and
         "intersections".
 
@@ -362,24 +310,13 @@ def remesh(
         mesh
         if isinstance(mesh, SphereMap) and triangles is None and sphere is None
         else sphere_map(
-            mesh,
-            triangles,
-            sphere,
-            area_weight=area_weight,
-            sweeps=sweeps,
-            threads=threads,
-            progress=progress,
+            mesh, triangles, sphere, area_weight=area_weight, sweeps=sweeps, threads=threads, progress=progress
         )
     )
     with listening(progress) as listener:
         fields = _core.remesh(
-            mapped._arrays,
-            grid=grid,
-            count=len(mapped.vertices) if count is None else count,
-            fit=fit,
-            seed=random_seed,
-            threads=arguments.thread_count(threads),
-            progress=listener,
+            mapped._arrays, grid=grid, count=len(mapped.vertices) if count is None else count, fit=fit,
+            seed=random_seed, threads=arguments.thread_count(threads), progress=listener,
         )
     return Remeshed(map=mapped, **fields)
 
@@ -404,10 +341,7 @@ class TextureCoordinates:
 
 
 def texture_coordinates(
-    mesh: Union[Result, SphereMap, Remeshed],
-    *,
-    chart: ChartName = "octahedral",
-    margin: SupportsFloat = 1.0 / 64,
+    mesh: Union[Result, SphereMap, Remeshed], *, chart: ChartName = "octahedral", margin: SupportsFloat = 1.0 / 64
 ) -> TextureCoordinates:
     """Lay a mesh out in a chart of the sphere, for texture mapping.
 
@@ -438,11 +372,8 @@ def texture_coordinates(
             "reconstruct() or the map of sphere_map()"
         )
     fields = _core.texture_coordinates(
-        points if isinstance(mesh, Result) else None,
-        mesh.triangles,
-        sphere,
-        chart=arguments.choice("chart", chart, get_args(ChartName)),
-        margin=arguments.real("margin", margin),
+        points if isinstance(mesh, Result) else None, mesh.triangles, sphere,
+        chart=arguments.choice("chart", chart, get_args(ChartName)), margin=arguments.real("margin", margin),
     )
     corners = points[fields["source_vertices"]]
     vertices = np.einsum("ijk,ij->ik", corners, fields["source_weights"])

@@ -82,19 +82,10 @@ class Morph:
 
 
 def morph(
-    first: Union[Result, SphereMap],
-    second: Union[Result, SphereMap],
-    *,
-    pairs: Optional[ArrayLike] = None,
-    align: AlignName = "rotation",
-    connectivity: ConnectivityName = "all",
-    samples: SupportsIndex = 40962,
-    fit: Optional[FitName] = None,
-    match: bool = False,
-    area_weight: SupportsFloat = 0.85,
-    sweeps: SupportsIndex = 15,
-    threads: SupportsIndex = 0,
-    progress: Progress = None,
+    first: Union[Result, SphereMap], second: Union[Result, SphereMap], *, pairs: Optional[ArrayLike] = None,
+    align: AlignName = "rotation", connectivity: ConnectivityName = "all", samples: SupportsIndex = 40962,
+    fit: Optional[FitName] = None, match: bool = False, area_weight: SupportsFloat = 0.85,
+    sweeps: SupportsIndex = 15, threads: SupportsIndex = 0, progress: Progress = None,
 ) -> Morph:
     """Change one shape into another, by way of their maps to the sphere.
 
@@ -119,9 +110,7 @@ def morph(
         Move and scale the second shape to the centroid and the area of the first.
     area_weight : float, 0 to 1; sweeps : int, 0 to 1000
         Of the maps, as for ``sphere_map``. Without effect on a ``SphereMap``.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : True, or callable(stage, fraction)
+    threads, progress
         As for ``reconstruct``; the stages are "map" and "morph".
 
     Raises
@@ -140,24 +129,15 @@ def morph(
     maps = []
     for shape in (first, second):
         if not isinstance(shape, (Result, SphereMap)):
-            raise InvalidInput(
-                f"a {type(shape).__name__} cannot be morphed; give the Results of reconstruct()"
-            )
+            raise InvalidInput(f"a {type(shape).__name__} cannot be morphed; give the Results of reconstruct()")
     for shape in (first, second):
         if isinstance(shape, Result):
-            shape = sphere_map(
-                shape, area_weight=area_weight, sweeps=sweeps, threads=threads, progress=progress
-            )
+            shape = sphere_map(shape, area_weight=area_weight, sweeps=sweeps, threads=threads, progress=progress)
         maps.append(shape)
     with listening(progress) as listener:
         fields = _core.morph(
-            *(each._arrays for each in maps),
-            pairs=_pairs(pairs),
-            align=align == "rotation",
-            connectivity=connectivity,
-            samples=count,
-            fit=fit,
-            threads=arguments.thread_count(threads),
+            *(each._arrays for each in maps), pairs=_pairs(pairs), align=align == "rotation",
+            connectivity=connectivity, samples=count, fit=fit, threads=arguments.thread_count(threads),
             progress=listener,
         )
     if is_matched:
@@ -169,18 +149,14 @@ def morph(
     if all(each.colors is not None for each in maps):
         for side, name in enumerate(("first", "second")):
             values: Any = maps[side].colors
-            colors[side] = maps[side].interpolate(
-                values, fields[f"{name}_triangle"], fields[f"{name}_weights"]
-            )
+            colors[side] = maps[side].interpolate(values, fields[f"{name}_triangle"], fields[f"{name}_weights"])
     return Morph(**fields, first_colors=colors[0], second_colors=colors[1])
 
 
 def _pairs(pairs: Optional[ArrayLike]) -> IndexArray:
     array: NDArray[np.generic] = np.empty((0, 2), np.int32) if pairs is None else np.asarray(pairs)
     if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-        raise InvalidInput(
-            f"pairs have the type {array.dtype} and the shape {array.shape}; give integers, (p, 2)"
-        )
+        raise InvalidInput(f"pairs have the type {array.dtype} and the shape {array.shape}; give integers, (p, 2)")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 

@@ -17,13 +17,7 @@ OTHERS = (
         """What the columns of a text file are, from the first on, e.g. "x,y,z,-,red,green,blue"; "-"
         is left out. None: what the file says, or looks like.""",
     ),
-    (
-        "details",
-        "bool",
-        False,
-        "bool",
-        "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.",
-    ),
+    ("details", "bool", False, "bool", "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``."),
     (
         "progress",
         "Progress",
@@ -67,8 +61,7 @@ def stub(table: list[dict[str, Any]]) -> str:
 
     def overload(result: str, **given: str) -> str:
         parameters = [
-            f"{name}: {given[name]}" if name in given else f"{name}: {kind} = ..."
-            for name, kind, *_ in keywords(table)
+            f"{name}: {given[name]}" if name in given else f"{name}: {kind} = ..." for name, kind, *_ in keywords(table)
         ]
         lines = "".join(f"    {parameter},\n" for parameter in ["points: CloudLike", "*", *parameters])
         return f"@overload\ndef reconstruct(\n{lines}) -> {result}: ...\n"

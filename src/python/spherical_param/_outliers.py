@@ -30,10 +30,7 @@ class Outliers:
 
 
 def find_outliers(
-    points: CloudLike,
-    *,
-    sigma: Union[SupportsFloat, Literal["auto"]] = 4.0,
-    threads: SupportsIndex = 0,
+    points: CloudLike, *, sigma: Union[SupportsFloat, Literal["auto"]] = 4.0, threads: SupportsIndex = 0,
     progress: Progress = None,
 ) -> Outliers:
     """Find the points that ``reconstruct(points, outliers=sigma)`` leaves out.
@@ -46,9 +43,7 @@ def find_outliers(
         Outliers deviate by more than the mean and this number of standard deviations (section 4.2
         of the paper). "auto": stray points, small clusters, points between sheets and isolated
         points a little off a surface; hardly ever points of a surface.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : True, or callable(stage, fraction)
+    threads, progress
         As for ``reconstruct``; the stages are "neighbors", "graph" and "outliers".
 
     Raises
@@ -62,10 +57,7 @@ def find_outliers(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values: dict[str, object] = {
-            "outliers": sigma,
-            "threads": arguments.thread_count(threads),
-        }
+        values: dict[str, object] = {"outliers": sigma, "threads": arguments.thread_count(threads)}
         try:
             indices = _core.find_outliers(cloud.points, values, progress=listener)
         except InvalidInput as error:  # which names the option of reconstruct()
@@ -76,11 +68,7 @@ def find_outliers(
 
 
 def find_parts(
-    points: CloudLike,
-    *,
-    min_points: SupportsIndex = 50,
-    threads: SupportsIndex = 0,
-    progress: Progress = None,
+    points: CloudLike, *, min_points: SupportsIndex = 50, threads: SupportsIndex = 0, progress: Progress = None
 ) -> tuple[IndexArray, ...]:
     """Find the surfaces of a cloud that ``reconstruct(points, parts="each")`` meshes.
 
@@ -90,9 +78,7 @@ def find_parts(
         As for ``reconstruct``.
     min_points : int, 4 and up
         Minimum number of distinct points of a part.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : True, or callable(stage, fraction)
+    threads, progress
         As for ``reconstruct``; the stages are "neighbors", "graph", "outliers"
         and "parts".
 
@@ -111,9 +97,6 @@ def find_parts(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values: dict[str, object] = {
-            "min_points": min_points,
-            "threads": arguments.thread_count(threads),
-        }
+        values: dict[str, object] = {"min_points": min_points, "threads": arguments.thread_count(threads)}
         parts: tuple[IndexArray, ...] = _core.find_parts(cloud.points, values, progress=listener)
     return parts

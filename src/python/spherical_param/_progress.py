@@ -33,9 +33,7 @@ class _Bar:
     def __call__(self, stage: str, fraction: float) -> None:
         if stage != self._stage:
             self.close()
-            self._bar = self._make(
-                desc=stage, total=100, bar_format="{desc:<13} {percentage:3.0f} % |{bar}| {elapsed}"
-            )
+            self._bar = self._make(desc=stage, total=100, bar_format="{desc:<13} {percentage:3.0f} % |{bar}| {elapsed}")
             self._stage = stage
         self._bar.update(int(100 * fraction) - self._bar.n)
 
@@ -81,10 +79,7 @@ def listening(progress: Progress) -> Iterator[Optional[ProgressFunction]]:
             bar.close()
         return
     if not callable(progress):
-        raise InvalidInput(
-            f"progress = {progress!r} cannot be called; give True or a function of (stage, "
-            "fraction)"
-        )
+        raise InvalidInput(f"progress = {progress!r} cannot be called; give True or a function of (stage, fraction)")
     listener = progress
 
     def report(stage: str, fraction: float) -> bool:

@@ -17,11 +17,7 @@ _NAMES = [row["name"] for row in _TABLE]
 
 
 def reconstruct(
-    points: CloudLike,
-    *,
-    columns: Optional[str] = None,
-    details: bool = False,
-    progress: Progress = None,
+    points: CloudLike, *, columns: Optional[str] = None, details: bool = False, progress: Progress = None,
     **options: Any,
 ) -> Union[Result, Results]:
     """Mesh a point cloud.
@@ -78,16 +74,13 @@ OPTIONS
     for name in options:
         if name not in _NAMES:
             raise TypeError(
-                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, columns, "
-                "details or progress"
+                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, columns, details or progress"
             )
     has_details = arguments.truth("details", details)
     values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
         cloud = read("points", points, listener, columns)
-        fields = _core.reconstruct(
-            cloud.points, values, info=cloud.info, details=has_details, progress=listener
-        )
+        fields = _core.reconstruct(cloud.points, values, info=cloud.info, details=has_details, progress=listener)
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)
     results = make_results(fields, cloud, options)
@@ -98,9 +91,7 @@ def _describe() -> None:
     """Give reconstruct() the signature and documentation of all options."""
     kinds = globals()
     keywords = [
-        inspect.Parameter(
-            name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=eval(kind, kinds)
-        )
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=eval(kind, kinds))
         for name, kind, default, *_ in _options.keywords(_TABLE)
     ]
     signature = inspect.signature(reconstruct)

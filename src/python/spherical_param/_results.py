@@ -122,27 +122,18 @@ class Result(Surface, MeshExport):
             raise InvalidInput(f"{os.fspath(path)!r} does not end in .html; give a name that does")
         if not _core.has_report:
             raise InvalidInput(
-                "this package was built without the page; install three.js (libjs-three) and build "
-                "it again"
+                "this package was built without the page; install three.js (libjs-three) and build it again"
             )
         source = self._source
         given = len(self.vertices) - self.added_vertices
-        if not np.array_equal(
-            source.cloud.points[self.input_of_vertex[:given]], self.vertices[:given]
-        ):
+        if not np.array_equal(source.cloud.points[self.input_of_vertex[:given]], self.vertices[:given]):
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
         threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
             _core.write_report(
-                os.fsencode(path),
-                source.cloud.points,
-                source.cloud.colors,
-                {**source.options, "threads": threads},
-                info=source.cloud.info,
-                part=source.part,
-                input=source.cloud.name or "points",
-                command=source.command,
-                progress=listener,
+                os.fsencode(path), source.cloud.points, source.cloud.colors,
+                {**source.options, "threads": threads}, info=source.cloud.info, part=source.part,
+                input=source.cloud.name or "points", command=source.command, progress=listener,
             )
 
     def _repr_html_(self) -> Optional[str]:
@@ -260,10 +251,7 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
         figures["vertex_of_input"] = vertex_of_input
         results.append(
             Result(
-                **figures,
-                vertices=positions,
-                left_out=left_out,
-                stages=fields["stages"],
+                **figures, vertices=positions, left_out=left_out, stages=fields["stages"],
                 colors=None if cloud.colors is None else cloud.colors[vertices],
                 _source=Source(cloud, options, part),
             )
