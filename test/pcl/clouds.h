@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/mesh_topology.h"
+#include "handle_shapes.h"
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/console/print.h>
@@ -11,13 +11,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 /// What the tests of the PCL classes share.
 namespace test {
 
+using spherical_param::Positions;
 using Polygons = std::vector<pcl::Vertices>;
 
 /// Half the axes of makeEllipsoid().
@@ -29,20 +29,15 @@ inline std::array<double, 3> colorAt(const Eigen::Vector3f& point) {
   return {127.0 + color.x(), 127.0 + color.y(), 127.0 + color.z()};
 }
 
-/// Points spread evenly over an ellipsoid, in the order of a spiral; the axes differ so that no two
-/// distances are the same.
+/// A cloud of points, with colours if they have some.
 template <typename PointT = pcl::PointXYZ>
-typename pcl::PointCloud<PointT>::Ptr makeEllipsoid(int count,
-                                                    const Eigen::Vector3d& axes = kAxes) {
+typename pcl::PointCloud<PointT>::Ptr makeCloud(const Positions& points) {
   typename pcl::PointCloud<PointT>::Ptr cloud(new pcl::PointCloud<PointT>);
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double angle = i * 2.399963229728653;  // the golden angle
+  for (const auto p : points.colwise()) {
     PointT point{};
-    point.x = static_cast<float>(axes.x() * radius * std::cos(angle));
-    point.y = static_cast<float>(axes.y() * radius * std::sin(angle));
-    point.z = static_cast<float>(axes.z() * z);
+    point.x = static_cast<float>(p.x());
+    point.y = static_cast<float>(p.y());
+    point.z = static_cast<float>(p.z());
     if constexpr (pcl::traits::has_color<PointT>::value) {
       const std::array<double, 3> color = colorAt(point.getVector3fMap());
       point.r = static_cast<std::uint8_t>(color[0]);
@@ -58,20 +53,17 @@ typename pcl::PointCloud<PointT>::Ptr makeEllipsoid(int count,
   return cloud;
 }
 
+/// Points spread evenly over an ellipsoid, in the order of a spiral; the axes differ so that no two
+/// distances are the same.
+template <typename PointT = pcl::PointXYZ>
+typename pcl::PointCloud<PointT>::Ptr makeEllipsoid(int count,
+                                                    const Eigen::Vector3d& axes = kAxes) {
+  return makeCloud<PointT>(axes.asDiagonal() * spherical_param::test::spiralSphere(count));
+}
+
 /// A torus around z, with twice as many rings as points in each.
 inline pcl::PointCloud<pcl::PointXYZ>::Ptr makeTorus(int around) {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  const double step = 2.0 * std::acos(-1.0) / around;
-  for (int ring = 0; ring < 2 * around; ++ring)
-    for (int k = 0; k < around; ++k) {
-      const double u = step * ring / 2.0;
-      const double v = step * (k + ring % 2 / 2.0);
-      const double radius = 1.0 + 0.4 * std::cos(v);
-      cloud->push_back(pcl::PointXYZ(static_cast<float>(radius * std::cos(u)),
-                                     static_cast<float>(radius * std::sin(u)),
-                                     static_cast<float>(0.4 * std::sin(v))));
-    }
-  return cloud;
+  return makeCloud(spherical_param::test::torusCloud(2 * around, around));
 }
 
 inline spherical_param::Triangles trianglesOf(const Polygons& polygons) {
@@ -83,11 +75,13 @@ inline spherical_param::Triangles trianglesOf(const Polygons& polygons) {
   return triangles;
 }
 
-/// Whether the polygons are a closed genus-0 mesh over so many points.
+/// Whether the polygons are a closed mesh of this genus over so many points.
+inline bool isClosed(const Polygons& polygons, std::size_t points, int genus) {
+  return spherical_param::test::isSurfaceOverAll(trianglesOf(polygons), static_cast<int>(points),
+                                                 genus);
+}
 inline bool isSphere(const Polygons& polygons, std::size_t points) {
-  const spherical_param::MeshTopology topology =
-      spherical_param::checkTopology(trianglesOf(polygons), points);
-  return topology.isSphere() && topology.vertices == points;
+  return isClosed(polygons, points, 0);
 }
 
 template <typename PointT>

@@ -17,7 +17,6 @@ namespace test {
 using pcl::Indices;
 using pcl::PointXYZ;
 using spherical_param::Options;
-using spherical_param::Positions;
 using spherical_param::Surface;
 using spherical_param::Triangles;
 using Cloud = pcl::PointCloud<PointXYZ>;
@@ -39,11 +38,7 @@ inline pcl::IndicesPtr share(const Indices& indices) {
 }
 
 inline Positions positionsOf(const Cloud& cloud, const Indices& indices) {
-  Positions points(3, static_cast<Eigen::Index>(indices.size()));
-  for (std::size_t i = 0; i < indices.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) =
-        cloud[static_cast<std::size_t>(indices[i])].getVector3fMap().cast<double>();
-  return points;
+  return cloud.getMatrixXfMap(3, 4, 0)(Eigen::all, indices).cast<double>();
 }
 
 inline Polygons meshed(Reconstruction& reconstruction) {

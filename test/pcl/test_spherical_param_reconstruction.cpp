@@ -3,7 +3,6 @@
 
 #include <pcl/search/kdtree.h>
 
-#include <cmath>
 #include <functional>
 #include <thread>
 #include <utility>
@@ -93,11 +92,10 @@ TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSen
   EXPECT_EQ(inward.getResult().surface().faced_by, FacedBy::Normals);
   EXPECT_LT(inward.getResult().surface().measures.volume, 0.0);
 
-  const Cloud::Ptr patch(new Cloud);
+  Positions places(3, 400);
   for (int i = 0; i < 400; ++i)  // around the origin
-    patch->push_back(PointXYZ(static_cast<float>(i % 20) - 10.0F,
-                              static_cast<float>(i / 20) - 10.0F,
-                              0.01F * static_cast<float>(i % 7) - 0.02F));
+    places.col(i) << i % 20 - 10.0, i / 20 - 10.0, 0.01 * (i % 7) - 0.02;
+  const Cloud::Ptr patch = makeCloud(places);
   Reconstruction reconstruction;
   reconstruction.setInputCloud(patch);
   meshed(reconstruction);
@@ -253,11 +251,8 @@ TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing
 }
 
 TEST_F(SphericalParamReconstruction, SmoothFillsAppendPointsToThePolygonMesh) {
-  const Cloud::Ptr whole = makeEllipsoid(2000);
-  const Cloud::Ptr cloud(new Cloud);
-  for (const PointXYZ& point : *whole)
-    if (std::abs(point.z) < 0.6F)
-      cloud->push_back(point);
+  const Cloud::Ptr cloud = makeCloud(
+      kAxes.asDiagonal() * spherical_param::test::spiralSphere(2000).middleCols(250, 1500));
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
   reconstruction.setSurface(spherical_param::SurfaceMode::Closed);
