@@ -49,10 +49,8 @@ struct Outcome {
   std::vector<std::string> warnings;
   std::size_t parts = 0;         ///< number of meshed parts
   std::size_t points = 0;        ///< of the cloud
-  std::size_t ignored = 0;       ///< not finite
   std::size_t outliers = 0;      ///< left out
   std::size_t other_points = 0;  ///< of parts that were not meshed, or of no part
-  std::size_t duplicates = 0;    ///< merged into an earlier point
   std::size_t self_intersections = 0;
   double seconds = 0.0;  ///< of the reconstruction, wall time
 };

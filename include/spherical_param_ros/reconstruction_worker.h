@@ -12,11 +12,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace spherical_param_ros {
 
-/// The work of a worker so far. At any time
+/// The work of a worker so far: of what was answered. At any time
 ///   received = done + failed + cancelled + dropped + queued + (is_working ? 1 : 0).
 /// Refused requests count in `refused` only.
 struct Statistics {
@@ -28,9 +29,7 @@ struct Statistics {
   std::uint64_t refused = 0;  ///< requests beyond max_requests
   std::size_t queued = 0;
   bool is_working = false;
-  /// Of the last cloud that was done or failed, without its mesh; valid if `has_last`.
-  Outcome last;
-  bool has_last = false;
+  std::optional<Outcome> last;  ///< of the last cloud that was done or failed, without its mesh
 };
 
 /// Meshes clouds one after the other in a thread of its own.
@@ -76,9 +75,6 @@ public:
 
   Statistics statistics() const;
 
-  /// Waits until all work is done.
-  void waitUntilIdle();
-
   /// Cancels the current work and drops waiting clouds. Later clouds are refused. Returns when all
   /// handlers have returned.
   void stop();
@@ -96,14 +92,13 @@ private:
   /// Moves the oldest clouds beyond the queue's depth into `dropped`.
   void shorten(Jobs& dropped);
   bool isWanted(bool is_request);
-  void finish(const Job& job, const Outcome& outcome);
+  void count(const Outcome& outcome, bool is_request);
   static void answer(const Job& job, const Outcome& outcome);
   static void answerAll(const Jobs& jobs, Status status, const char* message);
 
   const Mesher mesher_;
   mutable std::mutex mutex_;  ///< guards all below but the thread
   std::condition_variable work_or_stop_;
-  std::condition_variable idle_;
   Settings settings_;
   Jobs stream_;
   Jobs requests_;
@@ -111,7 +106,6 @@ private:
   bool is_newer_there_ = false;  ///< a cloud arrived since the running one began
   int cancellations_in_a_row_ = 0;
   bool is_request_next_ = true;  ///< where both wait
-  bool is_answering_ = false;
   bool is_stopped_ = false;
   std::thread thread_;
 };

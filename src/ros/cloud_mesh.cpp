@@ -213,13 +213,10 @@ void describe(const Result& result, Outcome& outcome) {
   outcome.message = result.verdict;
   outcome.has_faults = !result.failures.empty() || spherical_param::hasFault(result.findings);
   outcome.parts = result.surfaces.size();
-  outcome.ignored = result.left_out.not_finite.size();
   outcome.outliers = result.left_out.outliers.size();
   outcome.other_points = result.left_out.other_parts.size();
-  for (const Surface& surface : result.surfaces) {
-    outcome.duplicates += surface.duplicates();
+  for (const Surface& surface : result.surfaces)
     outcome.self_intersections += surface.self_intersections.size();
-  }
 }
 
 void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,

@@ -92,34 +92,41 @@ Marker markerOf(const Mesh& mesh, const Header& header) {
   return marker;
 }
 
-/// \param failed_before clouds that had failed when this was last said
-template <typename Wrapper>
-void diagnose(const Statistics& statistics, std::uint64_t failed_before, Wrapper& status) {
-  const Outcome& last = statistics.last;
-  const std::string state = statistics.is_working ? "working" : "idle";
-  if (statistics.failed > failed_before)
-    status.summary(Wrapper::WARN, last.status == Status::Failed
-                                      ? "the last cloud could not be meshed"
-                                      : "a cloud could not be meshed");
-  else if (last.has_faults)
-    status.summary(Wrapper::WARN, "the last mesh has faults");
-  else
-    status.summary(Wrapper::OK, state);
-  status.add("state", state);
-  status.add("last result", std::string(statistics.has_last ? nameOf(last.status) : "none"));
-  status.add("last message", last.message);
-  status.add("last time [s]", last.seconds);
-  status.add("last cloud [points]", last.points);
-  status.add("last parts", last.parts);
-  status.add("last outliers [points]", last.outliers);
-  status.add("last other parts [points]", last.other_points);
-  status.add("last self-intersections", last.self_intersections);
-  status.add("received clouds", statistics.received);
-  status.add("done clouds", statistics.done);
-  status.add("failed clouds", statistics.failed);
-  status.add("dropped clouds", statistics.dropped);
-  status.add("cancelled clouds", statistics.cancelled);
-  status.add("waiting clouds", statistics.queued);
-}
+/// What ROS's diagnostics say of a worker.
+class Diagnosis {
+public:
+  template <typename Wrapper>
+  void tell(const Statistics& statistics, Wrapper& status) {
+    const Outcome last = statistics.last.value_or(Outcome());
+    const std::string state = statistics.is_working ? "working" : "idle";
+    if (statistics.failed > failed_before_)
+      status.summary(Wrapper::WARN, last.status == Status::Failed
+                                        ? "the last cloud could not be meshed"
+                                        : "a cloud could not be meshed");
+    else if (last.has_faults)
+      status.summary(Wrapper::WARN, "the last mesh has faults");
+    else
+      status.summary(Wrapper::OK, state);
+    failed_before_ = statistics.failed;
+    status.add("state", state);
+    status.add("last result", std::string(statistics.last ? nameOf(last.status) : "none"));
+    status.add("last message", last.message);
+    status.add("last time [s]", last.seconds);
+    status.add("last cloud [points]", last.points);
+    status.add("last parts", last.parts);
+    status.add("last outliers [points]", last.outliers);
+    status.add("last other parts [points]", last.other_points);
+    status.add("last self-intersections", last.self_intersections);
+    status.add("received clouds", statistics.received);
+    status.add("done clouds", statistics.done);
+    status.add("failed clouds", statistics.failed);
+    status.add("dropped clouds", statistics.dropped);
+    status.add("cancelled clouds", statistics.cancelled);
+    status.add("waiting clouds", statistics.queued);
+  }
+
+private:
+  std::uint64_t failed_before_ = 0;  ///< clouds that had failed when this was last said
+};
 
 }  // namespace spherical_param_ros

@@ -87,13 +87,6 @@ Statistics ReconstructionWorker::statistics() const {
   return statistics;
 }
 
-void ReconstructionWorker::waitUntilIdle() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  idle_.wait(lock, [this] {
-    return stream_.empty() && requests_.empty() && !statistics_.is_working && !is_answering_;
-  });
-}
-
 void ReconstructionWorker::stop() {
   Jobs dropped;
   {
@@ -105,7 +98,6 @@ void ReconstructionWorker::stop() {
     statistics_.dropped += dropped.size();
   }
   work_or_stop_.notify_all();
-  idle_.notify_all();
   answerAll(dropped, Status::Dropped, kStopping);
   if (thread_.joinable())
     thread_.join();
@@ -116,21 +108,22 @@ void ReconstructionWorker::run() {
   Job job;
   while (takeJob(lock, job)) {
     const Settings settings = settings_;
+    const bool is_request = job.is_request;
     lock.unlock();
     Outcome outcome;
     try {
-      const bool is_request = job.is_request;
       outcome = mesher_(*job.cloud, settings, [this, is_request] { return isWanted(is_request); });
     } catch (const std::exception& error) {
       outcome = withoutMesh(Status::Failed, error.what());
     } catch (...) {
       outcome = withoutMesh(Status::Failed, "an unknown exception");
     }
-    finish(job, outcome);
-    job = Job();  // gives the cloud back before the next one arrives
+    answer(job, outcome);
+    // Gives cloud and mesh back before the next ones come.
+    job = Job();
+    outcome.mesh.reset();
     lock.lock();
-    is_answering_ = false;
-    idle_.notify_all();
+    count(outcome, is_request);
   }
 }
 
@@ -167,24 +160,17 @@ bool ReconstructionWorker::isWanted(bool is_request) {
          cancellations_in_a_row_ >= settings_.max_cancellations;
 }
 
-void ReconstructionWorker::finish(const Job& job, const Outcome& outcome) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    statistics_.is_working = false;
-    is_answering_ = true;
-    if (outcome.status == Status::Cancelled) {
-      ++statistics_.cancelled;
-      ++cancellations_in_a_row_;
-    } else {
-      ++(outcome.status == Status::Done ? statistics_.done : statistics_.failed);
-      if (!job.is_request)
-        cancellations_in_a_row_ = 0;
-      statistics_.last = outcome;
-      statistics_.last.mesh.reset();
-      statistics_.has_last = true;
-    }
+void ReconstructionWorker::count(const Outcome& outcome, bool is_request) {
+  statistics_.is_working = false;
+  if (outcome.status == Status::Cancelled) {
+    ++statistics_.cancelled;
+    ++cancellations_in_a_row_;
+    return;
   }
-  answer(job, outcome);
+  ++(outcome.status == Status::Done ? statistics_.done : statistics_.failed);
+  if (!is_request)
+    cancellations_in_a_row_ = 0;
+  statistics_.last = outcome;
 }
 
 void ReconstructionWorker::answer(const Job& job, const Outcome& outcome) {

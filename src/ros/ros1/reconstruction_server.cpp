@@ -1,7 +1,5 @@
 #include "ros1/reconstruction_server.h"
 
-#include "messages.h"
-
 #include <pcl_msgs/PolygonMesh.h>
 #include <shape_msgs/Mesh.h>
 #include <visualization_msgs/Marker.h>
@@ -117,9 +115,8 @@ void ReconstructionServer::updateDiagnostics() {
 
 void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const Statistics statistics = worker_->statistics();
-  spherical_param_ros::diagnose(statistics, failed_when_diagnosed_, status);
+  diagnosis_.tell(statistics, status);
   status.add("refused requests", statistics.refused);
-  failed_when_diagnosed_ = statistics.failed;
 }
 
 }  // namespace spherical_param_ros

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "messages.h"
 #include "ros1/parameter_server.h"
-#include "spherical_param_ros/reconstruction_worker.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <pcl_spherical_param/Reconstruct.h>
@@ -11,7 +11,6 @@
 #include <std_msgs/Header.h>
 
 #include <chrono>
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -46,7 +45,7 @@ private:
   /// Ends before the publishers.
   std::unique_ptr<ReconstructionWorker> worker_;
   diagnostic_updater::Updater diagnostics_;
-  std::uint64_t failed_when_diagnosed_ = 0;
+  Diagnosis diagnosis_;
   std::unique_ptr<ParameterServer> parameter_server_;
   ros::Subscriber subscriber_;
   ros::WallTimer timer_;

@@ -127,9 +127,7 @@ private:
   }
 
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-    const Statistics statistics = worker_->statistics();
-    spherical_param_ros::diagnose(statistics, failed_when_diagnosed_, status);
-    failed_when_diagnosed_ = statistics.failed;
+    diagnosis_.tell(worker_->statistics(), status);
   }
 
   rclcpp::Publisher<pcl_msgs::msg::PolygonMesh>::SharedPtr mesh_publisher_;
@@ -137,7 +135,7 @@ private:
   rclcpp::Publisher<visualization_msgs::msg::Marker>::SharedPtr marker_publisher_;
   std::unique_ptr<ReconstructionWorker> worker_;
   diagnostic_updater::Updater diagnostics_;
-  std::uint64_t failed_when_diagnosed_ = 0;
+  Diagnosis diagnosis_;
   rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr parameter_callback_;
   rclcpp::Subscription<sensor_msgs::msg::PointCloud2>::SharedPtr subscription_;
 };
