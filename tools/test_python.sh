@@ -104,10 +104,9 @@ wheel_needs_no_folder_of_the_build() {
 }
 
 open3d_has_the_same_mesh() {
-  PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_package.py -v \
-    Conversions.test_other_libraries_have_the_same_mesh &&
-    PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_clouds.py -v \
-      Clouds.test_clouds_and_meshes_of_open3d_are_taken
+  PYTHONPATH="$PWD/build/release/python:test/python" "$python" -m unittest -v \
+    test_package.Conversions.test_other_libraries_have_the_same_mesh \
+    test_clouds.Clouds.test_clouds_and_meshes_of_open3d_are_taken
 }
 
 source_distribution_builds() {

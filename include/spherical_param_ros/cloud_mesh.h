@@ -2,16 +2,11 @@
 
 #include "spherical_param_ros/parameters.h"
 
-#include <pcl/PCLHeader.h>
 #include <pcl/PCLPointCloud2.h>
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace spherical_param_ros {
 

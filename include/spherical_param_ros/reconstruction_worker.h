@@ -1,16 +1,9 @@
 #pragma once
 
 #include "spherical_param_ros/cloud_mesh.h"
-#include "spherical_param_ros/parameters.h"
-
-#include <pcl/PCLPointCloud2.h>
 
 #include <condition_variable>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>

@@ -2,9 +2,6 @@
 
 #include <pcl/conversions.h>
 #include <pcl/pcl_config.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_morph.h>
 #include <pcl/surface/spherical_param_remesh.h>
 #include <pcl/surface/spherical_param_texture.h>
@@ -13,10 +10,7 @@
 #include "spherical_param/mesh_measures.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
-#include <string>
-#include <utility>
 
 namespace pcl {
 namespace detail {

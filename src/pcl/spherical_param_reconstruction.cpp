@@ -1,16 +1,9 @@
-#include <pcl/console/print.h>
 #include <pcl/impl/instantiate.hpp>
-#include <pcl/point_types.h>
 #include <pcl/surface/impl/spherical_param_reconstruction.hpp>
-
-#include "spherical_param/errors.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cstddef>
 #include <limits>
-#include <new>
-#include <string>
 
 PCL_INSTANTIATE(SphericalParamReconstruction, PCL_XYZ_POINT_TYPES)
 

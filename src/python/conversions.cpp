@@ -1,22 +1,17 @@
 #include "python/conversions.h"
 
 #include "python/arrays.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 #include "spherical_param/result_fields.h"
 
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cstdint>
-#include <exception>
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <type_traits>
 #include <variant>
-#include <vector>
 
 namespace spherical_param::python {
 namespace {
@@ -120,61 +115,51 @@ struct PythonType {
   std::string of_struct = {};
 };
 
-template <typename Value>
-PythonType typeOf(const std::optional<Value>*);
-
-template <typename Value>
-PythonType typeOf(const Value*) {
-  if constexpr (isDescribed(kOf<Value>)) {
-    const std::string name = describe(kOf<Value>).name;
-    return {name, "", name};
-  } else if constexpr (isDescribedList(kOf<Value>)) {
-    const std::string name = describe(kOf<typename Value::value_type>).name;
-    return {"tuple[" + name + ", ...]", "", name};
-  } else if constexpr (std::is_enum_v<Value>) {
-    std::string names;
-    for (const char* name : namesOf(Value()))
-      names += (names.empty() ? "'" : ", '") + std::string(name) + "'";
-    return {"Literal[" + names + "]"};
-  } else if constexpr (std::is_same_v<Value, bool>) {
-    return {"bool"};
-  } else if constexpr (std::is_integral_v<Value>) {
-    return {"int"};
-  } else if constexpr (std::is_floating_point_v<Value>) {
-    return {"float"};
-  } else if constexpr (std::is_same_v<Value, std::string>) {
-    return {"str"};
-  } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
-    return {"FloatArray", "(3,)"};
-  } else if constexpr (std::is_same_v<Value, Eigen::Matrix3d>) {
-    return {"FloatArray", "(3, 3)"};
-  } else if constexpr (std::is_same_v<Value, Positions>) {
-    return {"FloatArray", "(n, 3)"};
-  } else if constexpr (std::is_same_v<Value, Triangles>) {
-    return {"IndexArray", "(n, 3)"};
-  } else if constexpr (std::is_same_v<Value, std::vector<std::array<Index, 2>>>) {
-    return {"IndexArray", "(n, 2)"};
-  } else if constexpr (std::is_same_v<Value, Loops>) {
-    return {"tuple[IndexArray, ...]", "(n,) each:"};
-  } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
-    return {"FloatArray", "(n,)"};
-  } else if constexpr (std::is_same_v<Value, std::vector<std::uint8_t>>) {
-    return {"ByteArray", "(n,)"};
-  } else {
-    static_assert(std::is_same_v<Value, std::vector<Index>>, "a type that Python does not know");
-    return {"IndexArray", "(n,)"};
-  }
-}
-
 PythonType optional(PythonType type) {
   type.name = "Optional[" + type.name + "]";
   return type;
 }
 
-template <typename Value>
-PythonType typeOf(const std::optional<Value>*) {
-  return optional(typeOf(kOf<Value>));
-}
+struct PythonTypes {
+  static PythonType of(const bool*) { return {"bool"}; }
+  static PythonType of(const double*) { return {"float"}; }
+  static PythonType of(const std::string*) { return {"str"}; }
+  static PythonType of(const Eigen::Vector3d*) { return {"FloatArray", "(3,)"}; }
+  static PythonType of(const Eigen::Matrix3d*) { return {"FloatArray", "(3, 3)"}; }
+  static PythonType of(const Positions*) { return {"FloatArray", "(n, 3)"}; }
+  static PythonType of(const Triangles*) { return {"IndexArray", "(n, 3)"}; }
+  static PythonType of(const std::vector<std::array<Index, 2>>*) {
+    return {"IndexArray", "(n, 2)"};
+  }
+  static PythonType of(const Loops*) { return {"tuple[IndexArray, ...]", "(n,) each:"}; }
+  static PythonType of(const std::vector<double>*) { return {"FloatArray", "(n,)"}; }
+  static PythonType of(const std::vector<std::uint8_t>*) { return {"ByteArray", "(n,)"}; }
+  static PythonType of(const std::vector<Index>*) { return {"IndexArray", "(n,)"}; }
+
+  template <typename Value>
+  static PythonType of(const std::optional<Value>*) {
+    return optional(of(kOf<Value>));
+  }
+
+  template <typename Value>
+  static PythonType of(const Value*) {
+    if constexpr (isDescribed(kOf<Value>)) {
+      const std::string name = describe(kOf<Value>).name;
+      return {name, "", name};
+    } else if constexpr (isDescribedList(kOf<Value>)) {
+      const std::string name = describe(kOf<typename Value::value_type>).name;
+      return {"tuple[" + name + ", ...]", "", name};
+    } else if constexpr (std::is_enum_v<Value>) {
+      std::string names;
+      for (const char* name : namesOf(Value()))
+        names += (names.empty() ? "'" : ", '") + std::string(name) + "'";
+      return {"Literal[" + names + "]"};
+    } else {
+      static_assert(std::is_integral_v<Value>, "a type that Python does not know");
+      return {"int"};
+    }
+  }
+};
 
 std::string helpOf(const ResultField& field, const std::string& shape) {
   const char* const units[] = {"",
@@ -202,7 +187,7 @@ void addRows(const Struct*, py::list& rows, std::set<std::string>& known) {
       addRows(kOf<Value>, rows, known);
     else if constexpr (isDescribedList(kOf<Value>))
       addRows(kOf<typename Value::value_type>, rows, known);
-    PythonType type = typeOf(kOf<Value>);
+    PythonType type = PythonTypes::of(kOf<Value>);
     if (std::is_pointer_v<Got> || field.kind == FieldKind::OfSolid)
       type = optional(type);
     fields.append(py::dict("name"_a = field.name, "type"_a = type.name,

@@ -6,33 +6,22 @@
 #include "python/arrays.h"
 #include "python/conversions.h"
 #include "python/files.h"
-#include "python/listener.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::python {
 namespace {
@@ -311,14 +300,9 @@ PYBIND11_MODULE(_core, module) {
   registerErrors();
   module.def("option_table", &optionRows);
   module.def("result_table", &resultTable);
-  module.attr("has_report") = hasReportPage();
+  addFiles(module);
   module.def("reconstruct", &reconstructPoints, "points"_a, "options"_a, py::kw_only(), "info"_a,
              "details"_a, "progress"_a);
-  module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "columns"_a, "progress"_a);
-  module.def("write_mesh", &writeMeshFile, "path"_a, "points"_a, "triangles"_a, "normals"_a,
-             "colors"_a, "added"_a, "scalars"_a, "offset"_a);
-  module.def("write_report", &writeReportFile, "path"_a, "points"_a, "colors"_a, "options"_a,
-             py::kw_only(), "info"_a, "part"_a, "input"_a, "command"_a, "progress"_a);
   module.def("morph", &morphMeshes, "first"_a, "second"_a, py::kw_only(), "pairs"_a, "align"_a,
              "connectivity"_a, "samples"_a, "fit"_a, "threads"_a, "progress"_a);
   module.def("find_outliers", &findOutlierPoints, "points"_a, "options"_a, py::kw_only(),

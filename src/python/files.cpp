@@ -10,20 +10,25 @@
 #include "common/point_table.h"
 #include "common/reconstruction_report.h"
 #include "common/report_page.h"
+#include "python/arrays.h"
 #include "python/conversions.h"
-#include "python/listener.h"
 #include "spherical_param/version.h"
 
 #include <pybind11/stl.h>
 
+#include <cstdint>
+#include <map>
 #include <memory>
-#include <vector>
+#include <string>
 
 namespace spherical_param::python {
 namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
+
+/// Further numbers of each point, by their names.
+using ScalarArrays = std::map<std::string, Array<double>>;
 
 tools::PointData toPointData(const Positions& points, const std::optional<Positions>& normals,
                              const std::optional<Array<std::uint8_t>>& colors,
@@ -55,8 +60,8 @@ tools::Json reportOf(const tools::ReconstructionSettings& settings, const std::s
   return json;
 }
 
-}  // namespace
-
+/// `points` (n, 3), `normals` (n, 3) or None, `colors` (n, 3) or None, `scalars` and others.
+/// \param columns of a text, or None
 py::dict readCloudFile(const std::string& path, const std::optional<std::string>& columns,
                        const py::object& progress) {
   Listener listener(progress);
@@ -77,6 +82,10 @@ py::dict readCloudFile(const std::string& path, const std::optional<std::string>
       "scalars"_a = scalars, "unused"_a = toArray(data.unused), "viewpoint"_a = data.viewpoint);
 }
 
+/// A mesh, or a plain cloud without triangles.
+///
+/// \param added  a mark of each vertex, or None
+/// \param offset None: what the format needs. \return what was subtracted from the points
 tools::Point writeMeshFile(const std::string& path, const Positions& points,
                            const Triangles& triangles, const std::optional<Positions>& normals,
                            const std::optional<Array<std::uint8_t>>& colors,
@@ -98,10 +107,12 @@ tools::Point writeMeshFile(const std::string& path, const Positions& points,
   return taken_off;
 }
 
-bool hasReportPage() {
-  return !tools::reportPage().empty();
-}
-
+/// Meshes a cloud once more, with all that the page of one of its surfaces shows.
+///
+/// \param values  options, \see toOptions; `info`, \see toCloudInfo
+/// \param part    of the surfaces, that is shown.
+/// \param input   name of the cloud.
+/// \param command that does the same again.
 void writeReportFile(const std::string& path, const Positions& points,
                      const std::optional<Array<std::uint8_t>>& colors, const py::dict& values,
                      const py::dict& info, std::size_t part, const std::string& input,
@@ -123,6 +134,16 @@ void writeReportFile(const std::string& path, const Positions& points,
                             &cloud, &surface, settings.options.threads});
     file.commit();
   });
+}
+
+}  // namespace
+
+void addFiles(py::module_& module) {
+  module.attr("has_report") = !tools::reportPage().empty();
+  module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "columns"_a, "progress"_a);
+  module.def("write_mesh", &writeMeshFile);
+  module.def("write_report", &writeReportFile, "path"_a, "points"_a, "colors"_a, "options"_a,
+             py::kw_only(), "info"_a, "part"_a, "input"_a, "command"_a, "progress"_a);
 }
 
 }  // namespace spherical_param::python

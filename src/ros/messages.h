@@ -4,12 +4,6 @@
 
 #include <pcl_conversions/pcl_conversions.h>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-
 /// What the nodes of ROS 1 and 2 say, in the types of either: these have the same fields.
 namespace spherical_param_ros {
 

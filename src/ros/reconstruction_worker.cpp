@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <future>
-#include <string>
 #include <utility>
 
 namespace spherical_param_ros {

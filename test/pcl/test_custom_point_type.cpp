@@ -10,7 +10,6 @@
 #include "clouds.h"
 
 #include <set>
-#include <string>
 #include <type_traits>
 
 namespace custom {

@@ -1,4 +1,4 @@
-#include "reconstructions.h"
+#include "clouds.h"
 
 #include <pcl/TextureMesh.h>
 #include <pcl/surface/spherical_param_map.h>

@@ -1,4 +1,4 @@
-#include "reconstructions.h"
+#include "clouds.h"
 
 #include <pcl/search/brute_force.h>
 #include <pcl/search/flann_search.h>
@@ -6,12 +6,8 @@
 #include <pcl/search/octree.h>
 #include <pcl/search/organized.h>
 
-#include <cmath>
-#include <functional>
 #include <new>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 namespace {
 

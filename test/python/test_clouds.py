@@ -149,7 +149,3 @@ class Clouds(shapes.InFolder):
             cloud = type("PointCloud", (), {"__module__": "trimesh.points"})()
             vars(cloud).update(vertices=self.points, **attributes)
             self.check(cloud, colors=bool(attributes), normals=False)
-
-
-if __name__ == "__main__":
-    unittest.main()

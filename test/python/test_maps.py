@@ -178,7 +178,3 @@ class Maps(unittest.TestCase):
         for function in (sp.texture_coordinates, lambda points: sp.morph(points, mesh)):
             with self.assertRaisesRegex(sp.InvalidInput, "; give the (mesh|Results)"):
                 function(points)
-
-
-if __name__ == "__main__":
-    unittest.main()

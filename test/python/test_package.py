@@ -222,7 +222,3 @@ class Views(shapes.InFolder):
             with unittest.mock.patch.dict(sys.modules, libraries):
                 self.show(mesh, {"DISPLAY": ":0"})
             call.assert_called_once()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,11 +12,7 @@ import spherical_param as sp
 from spherical_param import _core
 
 #: Keywords that are no rows of the table, and wrong values of them.
-OTHERS = {
-    "columns": ("x,y,z",),
-    "details": (1, "yes", None),
-    "progress": (1, "print"),
-}
+OTHERS = {"columns": ("x,y,z",), "details": (1, "yes", None), "progress": (1, "print")}
 
 
 class Mesh(shapes.InFolder):
@@ -317,7 +313,3 @@ class Parts(shapes.InFolder):
             finding = sp.Finding("a text", "option", value, False, False)
             self.assertEqual(str(finding), f"a text: try option={text}")
         self.assertEqual(str(sp.Finding("a text", "", "", False, False)), "a text")
-
-
-if __name__ == "__main__":
-    unittest.main()

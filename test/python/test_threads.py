@@ -147,9 +147,7 @@ class Progress(unittest.TestCase):
 class Signals(unittest.TestCase):
     def test_ctrl_c_ends_long_work_within_the_call(self):
         folder = os.path.dirname(os.path.abspath(__file__))
-        process = subprocess.Popen(
-            [sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True, cwd=folder
-        )
+        process = subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True, cwd=folder)
         self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline(), "ready\n")
         time.sleep(0.1)  # into the work
@@ -208,7 +206,3 @@ class Memory(unittest.TestCase):
         self.assertEqual(counts[5], counts[2])
         # The arrays of a round are some 100 kB.
         self.assertLess(sizes[5] - sizes[2], 20000)
-
-
-if __name__ == "__main__":
-    unittest.main()

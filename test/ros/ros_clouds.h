@@ -1,12 +1,11 @@
 #pragma once
 
+#include "helpers.h"
+
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/PCLPointField.h>
 
-#include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <string>
 
 /// Clouds as middleware brings them.
 namespace spherical_param_ros::test {
@@ -44,11 +43,11 @@ inline pcl::PCLPointCloud2 ellipsoid(std::uint32_t n) {
   cloud.height = 1;
   cloud.row_step = n * cloud.point_step;
   cloud.data.resize(cloud.row_step);
+  const spherical_param::Positions points =
+      Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() *
+      spherical_param::test::spiralSphere(static_cast<int>(n));
   for (std::uint32_t i = 0; i < n; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / n;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double angle = 2.399963229728653 * i;
-    setPoint(cloud, i, radius * std::cos(angle), 0.8 * radius * std::sin(angle), 0.5 * z);
+    setPoint(cloud, i, points(0, i), points(1, i), points(2, i));
     put(cloud, i, 12, static_cast<float>(i));
     put(cloud, i, 16, std::uint32_t{99000000} * (i + 1));
   }

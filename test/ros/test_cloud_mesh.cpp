@@ -5,19 +5,10 @@
 
 #include "spherical_param/reconstruct.h"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <functional>
 #include <limits>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace spherical_param_ros {
 namespace {

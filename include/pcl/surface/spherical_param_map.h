@@ -5,7 +5,6 @@
 
 #include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
-#include "spherical_param/types.h"
 
 #include <utility>
 

@@ -1,18 +1,9 @@
 #pragma once
 
-#include <pcl/PCLHeader.h>
-#include <pcl/PolygonMesh.h>
 #include <pcl/surface/spherical_param_map.h>
-#include <pcl/surface/spherical_param_reconstruction.h>
-#include <pcl/types.h>
 
 #include "spherical_param/map/morphing.h"
-#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
-
-#include <cstddef>
-#include <utility>
-#include <vector>
 
 namespace pcl {
 

@@ -60,8 +60,7 @@ namespace pcl {
 template <typename PointInT>
 class SphericalParamReconstruction : public MeshConstruction<PointInT> {
 public:
-  /** \brief Shared by several owners. */
-  using Ptr = shared_ptr<SphericalParamReconstruction<PointInT>>;
+  using Ptr = shared_ptr<SphericalParamReconstruction<PointInT>>;  ///< shared by several owners
   /** \brief Shared by several owners, none of whom changes it. */
   using ConstPtr = shared_ptr<const SphericalParamReconstruction<PointInT>>;
 
@@ -90,9 +89,8 @@ public:
    * genus 0 through every point.
    * \note setParts(), setSurface(), setHandles(), setIntersections() and setOutliers() override a
    * part each. */
-  inline void setTopology(TopologyMode mode) { options_.topology = mode; }
-  /** \brief Get the value of setTopology(). \return it */
-  inline TopologyMode getTopology() const { return options_.topology; }
+  void setTopology(TopologyMode mode) { options_.topology = mode; }
+  TopologyMode getTopology() const { return options_.topology; }  ///< As set. \return it
 
   /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
    * before meshing: for noisy and for merged scans.
@@ -100,23 +98,21 @@ public:
    * \note Polygons then index the first of merged points; getMovedPoints() has the new positions,
    * and Surface::consolidation of getResult() the figures. The search object is used for
    * setOutliers() and setParts() alone. */
-  inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
+  void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get the value of setConsolidation(). \return it */
-  inline ConsolidationMode getConsolidation() const { return options_.consolidation; }
+  ConsolidationMode getConsolidation() const { return options_.consolidation; }
 
   /** \brief Set whether openings of the surface are filled.
    * \param[in] mode Closed: all are filled. Open leaves them open; Auto leaves certain ones open.
    * Default: as setTopology() says.
    * \note getResult() has the openings with their certainty, and the boundary of an open mesh. */
-  inline void setSurface(SurfaceMode mode) { options_.surface = mode; }
-  /** \brief Get the value of setSurface(). \return it */
-  inline SurfaceMode getSurface() const { return options_.surface; }
+  void setSurface(SurfaceMode mode) { options_.surface = mode; }
+  SurfaceMode getSurface() const { return options_.surface; }  ///< As set. \return it
 
   /** \brief Set up to which size openings are filled in any case.
    * \param[in] edges of the loop around an opening; default 0: none */
-  inline void setFillHoles(int edges) { options_.fill_holes = edges; }
-  /** \brief Get the value of setFillHoles(). \return it */
-  inline int getFillHoles() const { return options_.fill_holes; }
+  void setFillHoles(int edges) { options_.fill_holes = edges; }
+  int getFillHoles() const { return options_.fill_holes; }  ///< As set. \return it
 
   /** \brief Set whether the mesh has the handles of the surface.
    * \param[in] mode Auto: it has those that are certain. None: it has none and is one sphere, or
@@ -124,40 +120,36 @@ public:
    *
    * A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None for
    * remeshing and morphing. getResult() has the loops of the handles. */
-  inline void setHandles(HandleMode mode) { options_.handles = mode; }
-  /** \brief Get the value of setHandles(). \return it */
-  inline HandleMode getHandles() const { return options_.handles; }
+  void setHandles(HandleMode mode) { options_.handles = mode; }
+  HandleMode getHandles() const { return options_.handles; }  ///< As set. \return it
 
   /** \brief Set how openings are filled, if they are.
    * \param[in] mode Smooth: points are added, which go on as the surface around does. Default:
    * Flat. \note reconstruct(pcl::PolygonMesh&) appends the added points to the cloud, with the
    * other fields of the nearest vertex. The other overloads fill flat: their polygons index the
    * input. */
-  inline void setFill(FillMode mode) { options_.fill = mode; }
-  /** \brief Get the value of setFill(). \return it */
-  inline FillMode getFill() const { return options_.fill; }
+  void setFill(FillMode mode) { options_.fill = mode; }
+  FillMode getFill() const { return options_.fill; }  ///< As set. \return it
 
   /** \brief Set what happens to triangles that still intersect at the end.
    * \param[in] mode Remove: they are taken apart, if need be by leaving out triangles and
    * points. Keep: they are counted. Default: as setTopology() says.
    * \note getResult().left_out.unmeshed has the points. */
-  inline void setIntersections(IntersectionMode mode) { options_.intersections = mode; }
+  void setIntersections(IntersectionMode mode) { options_.intersections = mode; }
   /** \brief Get the value of setIntersections(). \return it */
-  inline IntersectionMode getIntersections() const { return options_.intersections; }
+  IntersectionMode getIntersections() const { return options_.intersections; }
 
   /** \brief Set which points are left out first because they belong to no surface.
    * \param[in] mode Auto: stray points, small clusters and isolated points near a surface.
    * Deviation: points too far from the average of their neighbours. Default: as setTopology() says.
    * \note getResult().left_out lists them. */
-  inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
-  /** \brief Get the value of setOutliers(). \return it */
-  inline OutlierMode getOutliers() const { return options_.outliers; }
+  void setOutliers(OutlierMode mode) { options_.outliers = mode; }
+  OutlierMode getOutliers() const { return options_.outliers; }  ///< As set. \return it
 
   /** \brief Set the threshold of OutlierMode::Deviation.
    * \param[in] sigma number of standard deviations, 0 to 1000; default 4 */
-  inline void setOutlierSigma(double sigma) { options_.outlier_sigma = sigma; }
-  /** \brief Get the value of setOutlierSigma(). \return it */
-  inline double getOutlierSigma() const { return options_.outlier_sigma; }
+  void setOutlierSigma(double sigma) { options_.outlier_sigma = sigma; }
+  double getOutlierSigma() const { return options_.outlier_sigma; }  ///< As set. \return it
 
   /** \brief Set which parts of the cloud are meshed. A part is a set of points that neighbours
    * connect.
@@ -165,37 +157,32 @@ public:
    * Each: every part by itself, into polygons of one mesh. Default: as setTopology() says.
    * \note With Each, a part that cannot be meshed (all points in one plane, for example) is left
    * out with a warning (PCL_WARN). */
-  inline void setParts(PartsMode mode) { options_.parts = mode; }
-  /** \brief Get the value of setParts(). \return it */
-  inline PartsMode getParts() const { return options_.parts; }
+  void setParts(PartsMode mode) { options_.parts = mode; }
+  PartsMode getParts() const { return options_.parts; }  ///< As set. \return it
 
   /** \brief Set the minimum number of distinct points of a part; smaller parts are left out. No
    * effect with PartsMode::All.
    * \param[in] points 4 and up; default 50 */
-  inline void setMinPartSize(int points) { options_.min_points = points; }
-  /** \brief Get the value of setMinPartSize(). \return it */
-  inline int getMinPartSize() const { return options_.min_points; }
+  void setMinPartSize(int points) { options_.min_points = points; }
+  int getMinPartSize() const { return options_.min_points; }  ///< As set. \return it
 
   /** \brief Set how the cloud is meshed.
    * \param[in] method default Method::Default; Paper is the method as published in 2004, without
    * what this library adds to it.
    * \note Set Method::Paper to compare with it: it folds limbs, fills openings and takes longer. */
-  inline void setMethod(Method method) { options_.method = method; }
-  /** \brief Get the value of setMethod(). \return it */
-  inline Method getMethod() const { return options_.method; }
+  void setMethod(Method method) { options_.method = method; }
+  Method getMethod() const { return options_.method; }  ///< As set. \return it
 
   /** \brief Set the number of nearest neighbours of each point, of Method::Paper.
    * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default 25. */
-  inline void setKSearch(int k) { options_.paper.k = k; }
-  /** \brief Get the value of setKSearch(). \return it */
-  inline int getKSearch() const { return options_.paper.k; }
+  void setKSearch(int k) { options_.paper.k = k; }
+  int getKSearch() const { return options_.paper.k; }  ///< As set. \return it
 
   /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper), of Method::Paper.
    * \param[in] weights default EdgeWeights::Adaptive
    * \note Only adaptive weights keep the embedding from collapsing by themselves. */
-  inline void setWeights(EdgeWeights weights) { options_.paper.weights = weights; }
-  /** \brief Get the value of setWeights(). \return it */
-  inline EdgeWeights getWeights() const { return options_.paper.weights; }
+  void setWeights(EdgeWeights weights) { options_.paper.weights = weights; }
+  EdgeWeights getWeights() const { return options_.paper.weights; }  ///< As set. \return it
 
   /** \brief Set the mean length of the tangential Laplacian at which the embedding has converged.
    * \param[in] tolerance in radii of the sphere, 0 to 1. Unset (std::nullopt, the default),
@@ -204,62 +191,53 @@ public:
    * \note Set it, to 1e-8 for example, for a map that hardly depends on its start, and where
    * smoothing sweeps leave folds (getDiagnosis().edges_outside_graph), as on long thin limbs.
    * Otherwise the mesh hardly gains. */
-  inline void setTolerance(std::optional<double> tolerance) {
-    options_.embedding.tolerance = tolerance;
-  }
+  void setTolerance(std::optional<double> tolerance) { options_.embedding.tolerance = tolerance; }
   /** \brief Get the value of setTolerance(). \return it */
-  inline std::optional<double> getTolerance() const { return options_.embedding.tolerance; }
+  std::optional<double> getTolerance() const { return options_.embedding.tolerance; }
 
   /** \brief Set the strength of smoothing.
    * \param[in] steps 0 (default) to 10000; 0: none. About as strong as this number of steps of the
    * paper's section 4.2.
    * \note The mesh keeps the points of the input; getMovedPoints() has the smoothed points for the
    * same polygons. */
-  inline void setSmoothing(int steps) { options_.smoothing = steps; }
-  /** \brief Get the value of setSmoothing(). \return it */
-  inline int getSmoothing() const { return options_.smoothing; }
+  void setSmoothing(int steps) { options_.smoothing = steps; }
+  int getSmoothing() const { return options_.smoothing; }  ///< As set. \return it
 
   /** \brief Set the seed of all random choices: the order of coarsening in the embedding, and the
    * parts of the mesh that the optimisation rebuilds. The same seed gives the same result.
    * \param[in] seed any number; default 1 */
-  inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
-  /** \brief Get the value of setSeed(). \return it */
-  inline std::uint32_t getSeed() const { return options_.seed; }
+  void setSeed(std::uint32_t seed) { options_.seed = seed; }
+  std::uint32_t getSeed() const { return options_.seed; }  ///< As set. \return it
 
   /** \brief Set the time after which the work ends with the best mesh so far, over all parts.
    * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit; 0: the first mesh, however long it
    * takes. Without a mesh in time, reconstruct() fails, or leaves out the parts that have none;
    * Surface::is_out_of_time of getResult() says whether the limit ended the work on a mesh.
    * \note Set it if a scan must not delay the next one. The mesh then depends on the machine. */
-  inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
+  void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
   /** \brief Get the value of setTimeLimit(). \return it */
-  inline std::optional<double> getTimeLimit() const { return options_.time_limit; }
+  std::optional<double> getTimeLimit() const { return options_.time_limit; }
 
   /** \brief Set the number of threads. The result does not depend on it.
    * \param[in] threads 0 (default): one for each processor. */
-  inline void setNumberOfThreads(unsigned int threads = 0) {
+  void setNumberOfThreads(unsigned int threads = 0) {
     options_.threads = static_cast<int>(threads);
   }
   /** \brief Get the value of setNumberOfThreads(). \return it */
-  inline unsigned int getNumberOfThreads() const {
-    return static_cast<unsigned int>(options_.threads);
-  }
+  unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
   /** \brief Set a function that receives the progress of the work; returning false cancels it.
    * \param[in] progress called from the thread that called reconstruct(); may be empty. \see
    * spherical_param::Progress for the stages */
-  inline void setProgressCallback(const ProgressCallback& progress) {
-    options_.progress = progress;
-  }
+  void setProgressCallback(const ProgressCallback& progress) { options_.progress = progress; }
   /** \brief Get the value of setProgressCallback(). \return it */
-  inline const ProgressCallback& getProgressCallback() const { return options_.progress; }
+  const ProgressCallback& getProgressCallback() const { return options_.progress; }
 
   /** \brief Set all options at once, also the progress callback. For options without a setter,
    * change a copy of getOptions().
    * \param[in] options checked by reconstruct() */
-  inline void setOptions(const spherical_param::Options& options) { options_ = options; }
-  /** \brief Get the value of setOptions(). \return it */
-  inline const spherical_param::Options& getOptions() const { return options_; }
+  void setOptions(const spherical_param::Options& options) { options_ = options; }
+  const spherical_param::Options& getOptions() const { return options_; }  ///< As set. \return it
 
   /** \brief Mesh the points given in setInputCloud() and setIndices().
    * \param[out] output header and cloud (with every field) are those of the whole input cloud,
@@ -276,33 +254,33 @@ public:
 
   /** \brief Get the number of surfaces that the last reconstruct() made.
    * \return the number; 1 after a failure */
-  inline std::size_t getPartCount() const { return parts_.size(); }
+  std::size_t getPartCount() const { return parts_.size(); }
 
   /** \brief Get the result of the last reconstruct(): the surface of each part, what was left out,
    * verdict and findings. Empty after a failure. Its input points are those of setIndices(), in
    * their order and without repetitions, or all points; getUsedIndices() and getVertexIndices() map
    * them to the cloud. getResult().surface() is the largest mesh, and fails after a failure.
    * \return the result, valid until the next reconstruct() */
-  inline const spherical_param::Result& getResult() const { return result_; }
+  const spherical_param::Result& getResult() const { return result_; }
 
   /** \brief Get the indices into the input cloud of the points of a part: finite, without
    * repetitions.
    * \param[in] part below getPartCount()
    * \return their indices, in the order of the input */
-  inline const pcl::Indices& getUsedIndices(std::size_t part = 0) const {
+  const pcl::Indices& getUsedIndices(std::size_t part = 0) const {
     return parts_.at(part).used_indices;
   }
 
   /** \brief Get the index into the input cloud of each vertex of a surface.
    * \param[in] part below getPartCount()
    * \return one index for each vertex */
-  inline const pcl::Indices& getVertexIndices(std::size_t part = 0) const {
+  const pcl::Indices& getVertexIndices(std::size_t part = 0) const {
     return parts_.at(part).vertex_indices;
   }
 
   /** \brief Get the number of points left out because they are not finite.
    * \return their number */
-  inline std::size_t getIgnoredPointCount() const { return result_.left_out.not_finite.size(); }
+  std::size_t getIgnoredPointCount() const { return result_.left_out.not_finite.size(); }
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
@@ -326,7 +304,7 @@ public:
    * \note Noisy points often leave some; see setSmoothing().
    * \param[in] part below getPartCount()
    * \return the pairs; empty for a clean scan */
-  inline const std::vector<std::array<spherical_param::Index, 2>>&
+  const std::vector<std::array<spherical_param::Index, 2>>&
   getSelfIntersections(std::size_t part = 0) const {
     return getSurfaceOf(part).self_intersections;
   }
@@ -335,13 +313,13 @@ public:
    * Indices are vertices, which getVertexIndices() maps to the cloud.
    * \param[in] part below getPartCount()
    * \return the diagnosis; getResult().verdict and getResult().findings put it in words */
-  inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
+  const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
     return getSurfaceOf(part).diagnosis;
   }
 
   /** \brief Get the cause and the remedy of the last failure; empty after a success.
    * \return one sentence */
-  inline const std::string& getErrorMessage() const { return error_message_; }
+  const std::string& getErrorMessage() const { return error_message_; }
 
 protected:
   using MeshConstruction<PointInT>::input_;
@@ -371,7 +349,7 @@ private:
   };
 
   /** \brief The surface of a part; an empty one after a failure. */
-  inline const spherical_param::Surface& getSurfaceOf(std::size_t part) const {
+  const spherical_param::Surface& getSurfaceOf(std::size_t part) const {
     static const spherical_param::Surface none;
     return part == 0 && result_.surfaces.empty() ? none : result_.surfaces.at(part);
   }

@@ -1,14 +1,9 @@
 #pragma once
 
-#include <pcl/PolygonMesh.h>
 #include <pcl/surface/spherical_param_map.h>
-#include <pcl/surface/spherical_param_reconstruction.h>
 
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
-
-#include <cstddef>
 
 namespace pcl {
 

@@ -1,18 +1,11 @@
 #pragma once
 
 #include <pcl/TextureMesh.h>
-#include <pcl/point_types.h>
 #include <pcl/surface/spherical_param_map.h>
-#include <pcl/surface/spherical_param_reconstruction.h>
 
-#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "spherical_param/types.h"
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <string>
 
 namespace pcl {
 

@@ -8,13 +8,9 @@
 
 #include "spherical_param/errors.h"
 
-#include <cstddef>
 #include <exception>
-#include <functional>
 #include <new>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace pcl {
 namespace detail {

@@ -20,16 +20,12 @@
 namespace pcl {
 namespace detail {
 
-/** \brief Numbering of a search object on a subset of a cloud: PCL 1.13 has both kinds, in KdTree
- * and FlannSearch. */
-enum class SearchIndexSpace { Cloud, Subset };
-
-/** \brief Finds the numbering of `search` on a subset, by queries for the nearest neighbour of
- * points of the subset: themselves. */
+/** \brief Whether a search object on a subset of a cloud answers with positions in the subset, or
+ * with indices of the cloud: PCL 1.13 has both kinds, in FlannSearch and KdTree. Told by queries
+ * for the nearest neighbour of points of the subset: themselves. */
 template <typename PointInT>
-SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& search,
-                                      const pcl::PointCloud<PointInT>& cloud,
-                                      const pcl::Indices& subset) {
+bool findsPositions(const pcl::search::Search<PointInT>& search,
+                    const pcl::PointCloud<PointInT>& cloud, const pcl::Indices& subset) {
   // An approximate search may miss a few, but not a thousand times.
   int probes_left = 1000;
   pcl::Indices found;
@@ -41,10 +37,8 @@ SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& searc
     --probes_left;
     if (search.nearestKSearch(cloud[static_cast<std::size_t>(subset[i])], 1, found, distances) < 1)
       continue;
-    if (found.at(0) == subset[i])
-      return SearchIndexSpace::Cloud;
-    if (found.at(0) == position)
-      return SearchIndexSpace::Subset;
+    if (found.at(0) == subset[i] || found.at(0) == position)
+      return found.at(0) == position;
   }
   throw spherical_param::ComputeError(
       "the search object does not find the points it was given; use a pcl::search::KdTree");
@@ -111,7 +105,7 @@ fillUserSearch(pcl::search::Search<PointInT>& search,
 
   const bool is_whole_cloud =
       subset->size() == cloud->size() && std::is_sorted(subset->begin(), subset->end());
-  if (!is_whole_cloud && findSearchIndexSpace(search, *cloud, *subset) == SearchIndexSpace::Subset)
+  if (!is_whole_cloud && findsPositions(search, *cloud, *subset))
     return points;
   std::vector<spherical_param::Index> point_of_index(cloud->size(), -1);
   for (std::size_t i = 0; i < points.size(); ++i)
