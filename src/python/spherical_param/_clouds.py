@@ -116,11 +116,8 @@ def _cloud(name: str, points: Any, normals: Any, colors: Any) -> Cloud:
                 f"{name} has {what} of the shape {rows.shape} for points of the shape "
                 f"{array.shape}; give one row for each point"
             )
-    return Cloud(
-        array,
-        None if directions is None else arguments.positions("normals", directions),
-        None if shades is None else _bytes(name, shades),
-    )
+    normal_rows = None if directions is None else arguments.positions("normals", directions)
+    return Cloud(array, normal_rows, None if shades is None else _bytes(name, shades))
 
 
 def _bytes(name: str, colors: NDArray[Any]) -> ByteArray:

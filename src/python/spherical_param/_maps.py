@@ -306,13 +306,11 @@ def remesh(
     random_seed = arguments.integer("seed", seed, 0, 2**32 - 1)
     least, most = (1, 2**24) if grid == "even" else (4, 2**28)
     count = None if points is None else arguments.integer("points", points, least, most)
-    mapped = (
-        mesh
-        if isinstance(mesh, SphereMap) and triangles is None and sphere is None
-        else sphere_map(
-            mesh, triangles, sphere, area_weight=area_weight, sweeps=sweeps, threads=threads, progress=progress
-        )
-    )
+    if isinstance(mesh, SphereMap) and triangles is None and sphere is None:
+        mapped = mesh
+    else:
+        options: Any = {"area_weight": area_weight, "sweeps": sweeps, "threads": threads, "progress": progress}
+        mapped = sphere_map(mesh, triangles, sphere, **options)
     with listening(progress) as listener:
         fields = _core.remesh(
             mapped._arrays, grid=grid, count=len(mapped.vertices) if count is None else count, fit=fit,
@@ -334,10 +332,8 @@ class TextureCoordinates:
     source_weights: FloatArray  #: (w, 3) their weights, >= 0, with sum 1
 
     def __repr__(self) -> str:
-        return (
-            f"<spherical_param.TextureCoordinates: {len(self.triangles)} triangles, "
-            f"{len(self.coordinates)} coordinates>"
-        )
+        sizes = f"{len(self.triangles)} triangles, {len(self.coordinates)} coordinates"
+        return f"<spherical_param.TextureCoordinates: {sizes}>"
 
 
 def texture_coordinates(
@@ -375,8 +371,6 @@ def texture_coordinates(
         points if isinstance(mesh, Result) else None, mesh.triangles, sphere,
         chart=arguments.choice("chart", chart, get_args(ChartName)), margin=arguments.real("margin", margin),
     )
-    corners = points[fields["source_vertices"]]
-    vertices = np.einsum("ijk,ij->ik", corners, fields["source_weights"])
-    # Without rounding.
-    vertices[: len(points)] = points
+    vertices = np.einsum("ijk,ij->ik", points[fields["source_vertices"]], fields["source_weights"])
+    vertices[: len(points)] = points  # without rounding
     return TextureCoordinates(vertices=vertices, **fields)
