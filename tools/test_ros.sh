@@ -43,17 +43,14 @@ by_cmake() { # <folder> <option>...
 }
 
 holds() { # <prefix> <file, or ! and one that it must not hold>...
-  local prefix="$1" file expected found good=yes
+  local file wrong=()
   for file in "${@:2}"; do
-    expected=yes found=no
-    [ "${file#!}" = "$file" ] || expected=no
-    [ ! -e "$prefix/${file#!}" ] || found=yes
-    [ "$found" = "$expected" ] || {
-      good=no
-      echo "$prefix: $file"
-    }
+    case "$file" in
+      !*) [ ! -e "$1/${file#!}" ] ;;
+      *) [ -e "$1/$file" ] ;;
+    esac || wrong+=("$file")
   done
-  [ "$good" = yes ]
+  [ "${#wrong[@]}" -eq 0 ] || { printf '%s\n' "$1:" "${wrong[@]}"; return 1; }
 }
 
 package=share/pcl_spherical_param
