@@ -8,29 +8,15 @@ import pathlib
 import re
 import resource
 import shlex
-import subprocess
-import sys
 import tempfile
 import unittest
 import zlib
 
 import numpy as np
+from tool_test import ToolTest, areas, call, limited, nearest, read_json, read_ply, run
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-from draw import read_ply  # noqa: E402
-
-TOOLS = pathlib.Path(sys.argv.pop()).resolve()
 STEP = 1 / 65535  # of the numbers in 16 bits
 SPHERE = "-topology", "sphere"
-
-
-def run(tool, *words, code=0, **more):
-    """What a tool prints."""
-    done = subprocess.run([f"{TOOLS}/pcl_spherical_param_{tool}", *map(str, words)], capture_output=True, text=True,
-                          check=False, **more)  # fmt: skip
-    assert done.returncode == code, (words, done.returncode, done.stderr)
-    return done.stdout + done.stderr
 
 
 class Page:
@@ -54,16 +40,6 @@ class Page:
         return self.integers[name][:, 0] / 255
 
 
-def nearest(points, others):
-    """Of each point the index of the nearest of others."""
-    return np.array([((others - point) ** 2).sum(axis=1).argmin() for point in points])
-
-
-def areas(points, triangles):
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-
-
 def in_plane(points, triangles):
     """Of each triangle its first side (length, 0) and its second (x, height)."""
     a, b, c = points[triangles].transpose(1, 0, 2)
@@ -76,12 +52,9 @@ def around(values, triangles, count):
     return np.bincount(triangles.ravel(), np.repeat(values, 3), count)
 
 
-class Report(unittest.TestCase):
+class Report(ToolTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        super().setUp()
         run("scan", "ellipsoid", "in.ply", "-points", 300)
 
     def page(self, shape, points, *options):
@@ -219,9 +192,9 @@ class Report(unittest.TestCase):
         for words, code, cause in ((["no/page.html"], 1, "missing directory"),
                                    (["r.html", "-json", "r.html"], 2, "would overwrite")):  # fmt: skip
             self.assertIn(cause, run("reconstruction", "in.ply", "out.ply", "-report", *words, code=code))
-        limit = 100000  # room for the mesh, not for the page
+        # Room for the mesh, not for the page.
         said = run("reconstruction", "in.ply", "out.ply", "-report", "page.html", code=1,
-                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))  # fmt: skip
+                   **limited(resource.RLIMIT_FSIZE, 100000))  # fmt: skip
         self.assertIn("cannot write 'page.html'", said)
         self.assertEqual(os.listdir(), ["in.ply"])
 
@@ -239,7 +212,7 @@ class Report(unittest.TestCase):
         # Nothing but the elements of program, data and arrays is where the data are.
         data = page.html[page.html.index('<script type="text/plain"') : page.html.index("<script>")]
         self.assertEqual(data.count("<"), 2 * len(page.texts) + 4)
-        report, expected = page.data["report"], json.loads(pathlib.Path("report.json").read_text())
+        report, expected = page.data["report"], read_json("report.json")
         self.assertEqual([report["input"], report["output"], report["options"]["report"]], [*names, "page.HTML"])
         self.assertEqual(expected["stages"][-1]["name"], "report")
         self.assertEqual(*({**one, "stages": None, "peak_memory_bytes": None} for one in (report, expected)))
@@ -263,8 +236,7 @@ class Report(unittest.TestCase):
 
 def setUpModule():
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([f"{TOOLS}/pcl_spherical_param_reconstruction", f"{folder}/none.ply", f"{folder}/out.ply",
-                               f"-report={folder}/page.html"], capture_output=True, text=True, check=False)  # fmt: skip
+        done = call("reconstruction", f"{folder}/none.ply", f"{folder}/out.ply", f"-report={folder}/page.html")
     if "built without the page" in done.stderr:
         raise unittest.SkipTest("this build has no page of the report")
 

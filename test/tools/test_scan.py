@@ -1,14 +1,12 @@
 #!/usr/bin/python3
 """Generated scans, and what they are taken from: test_scan.py FOLDER_OF_THE_TOOLS"""
 
-import os
 import pathlib
 import re
-import tempfile
 import unittest
 
 import numpy as np
-from test_report import nearest, read_ply, run
+from tool_test import ToolTest, nearest, read_ply, run
 
 # V - E + F of those that are no sphere: 2 for each piece, 2 less for each handle, 1 less for each opening.
 EULER = {"pair": 4, "torus": 0, "double_torus": -2, "bowl": 1, "chair": -6, "holed": -2}
@@ -25,13 +23,7 @@ def neighbors(points, count):
     return np.array([np.sort(np.linalg.norm(points - point, axis=1))[1 : count + 1] for point in points])
 
 
-class Scan(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-
+class Scan(ToolTest):
     def test_all_points_differ_and_are_the_same_for_the_same_seed(self):
         for shape in ("sphere", "plate", "pair"):
             for count in (4, 27, 333):

@@ -4,7 +4,7 @@
 
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "tool_runner.h"
+#include "temporary_directory.h"
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/console/print.h>

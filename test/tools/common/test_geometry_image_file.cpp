@@ -2,7 +2,7 @@
 
 #include "common/errors.h"
 #include "common/output_file.h"
-#include "tool_runner.h"
+#include "temporary_directory.h"
 
 #include <gtest/gtest.h>
 

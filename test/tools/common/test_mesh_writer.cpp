@@ -5,7 +5,7 @@
 #include "common/cloud_reader.h"
 #include "common/file_formats.h"
 #include "common/output_file.h"
-#include "tool_runner.h"
+#include "temporary_directory.h"
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/console/print.h>

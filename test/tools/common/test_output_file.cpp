@@ -1,7 +1,7 @@
 #include "common/output_file.h"
 
 #include "common/errors.h"
-#include "tool_runner.h"
+#include "temporary_directory.h"
 
 #include <gtest/gtest.h>
 

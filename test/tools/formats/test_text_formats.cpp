@@ -2,7 +2,7 @@
 
 #include "common/cloud_reader.h"
 #include "common/errors.h"
-#include "tool_runner.h"
+#include "temporary_directory.h"
 
 #include <gtest/gtest.h>
 

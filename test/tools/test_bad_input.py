@@ -1,0 +1,261 @@
+#!/usr/bin/python3
+"""Mistakes of users: each must end with the right exit code, one line of cause and one of remedy, and leave the folder
+as it was: test_bad_input.py FOLDER_OF_THE_TOOLS"""
+
+import os
+import pathlib
+import resource
+import unittest
+
+import numpy as np
+from tool_test import Mesh, ToolTest, call, ellipsoid, hemisphere, limited, run, write, write_ply, write_xyz
+
+FAILED, WRONG_USAGE = 1, 2
+
+
+def full_disk(size):
+    return limited(resource.RLIMIT_FSIZE, size)
+
+
+class BadInput(ToolTest):
+    def setUp(self):
+        super().setUp()
+        write_xyz("in.xyz", ellipsoid(500))
+        write_ply("in.ply", ellipsoid(20))
+        write("in.tif", "II")
+        write("kept.ply", "kept")
+
+    def check_output_refused(self, rows):
+        # It must exist: a missing device is not to be replaced by a file of that name.
+        with open("/dev/full", "r+b", buffering=0) as full:
+            self.check_refused(FAILED, rows, stdout=full)
+
+    def test_mistakes_that_every_tool_refuses(self):
+        for tool, others in (("reconstruction", ""), ("remesh", ""), ("morph", " in.ply"), ("texture", "")):
+            inputs = f"{tool} in.xyz{others}"
+            line = f"{inputs} out.ply"
+            self.check_refused(WRONG_USAGE, {
+                tool: " file is missing",
+                inputs: "the output file is missing",
+                f"{line} b.ply": "one file too many: 'b.ply'",
+                f"{tool} in.foo{others} out.ply": "'in.foo' has an extension",
+                f"{tool} in.stl{others} out.ply": "'in.stl' is STL",
+                f"{inputs} out.pcd": "'out.pcd' has an extension",
+                f"{inputs} in.xyz": "an extension",
+                f"{line} -quite": "unrecognised option '-quite'",
+                f"{line} -k 2": "option -k: '2' is not allowed",
+                f"{line} -json ''": "option -json: the name of the file is empty",
+                f"{line} -json in.xyz": "'in.xyz' would overwrite 'in.xyz'",
+                f"{line} -columns x,y": "has no x, y and z",
+                f"{line} -quiet -verbose": "exclude each other",
+            })  # fmt: skip
+            self.check_refused(FAILED, {
+                f"{tool} no.xyz{others} out.ply": "cannot read 'no.xyz': No such file",
+                f"{inputs} no/out.ply": "missing directory",
+                f"{line} -json no/r.json": "missing directory",
+            })  # fmt: skip
+            self.check_refused(FAILED, {f"{line} -quiet": "File too large"}, **full_disk(4000))
+            self.check_output_refused({f"{line} -json -": "standard output", f"{tool} -h": "standard output"})
+
+    def test_formats_that_are_not_read_are_named_with_a_command_that_converts_them(self):
+        write("in.dat", "LASF" + 9 * "\0")
+        for names, kind, command in (("in.las in.LAZ in.dat", "LA", "pdal translate"),
+                                     ("in.e57", "E57", "CloudCompare"),
+                                     ("in.ptx", "PTX", "CloudCompare"),
+                                     ("in.stl", "STL", "pcl_converter"),
+                                     ("in.glb", "glTF", "assimp export"),
+                                     ("in.vtk", "VTK", "pcl_vtk2pcd"),
+                                     ("in.bag", "a bag of ROS", "rosrun pcl_ros bag_to_pcd"),
+                                     ("in.mcap in.db3", "a bag of ROS 2", "ros2 bag play")):  # fmt: skip
+            for name in names.split():
+                said = run("reconstruction", name, "out.ply", code=WRONG_USAGE)
+                self.assertIn(f" is {kind}", said)
+                self.assertIn(f"\n  remedy: convert it: {command} ", said)
+
+    def test_files_that_make_no_sense_are_refused(self):
+        os.symlink("in.ply", "link.ply")
+        self.check_refused(WRONG_USAGE, {
+            "reconstruction 'in\n.las' out.ply": "'in?.las'",
+            "reconstruction in.xyz out": "'out' has an extension",
+            "reconstruction in.xyz out.ply -sphere ''": "-sphere",
+            "reconstruction in.xyz ./a.obj -sphere a.obj": "would overwrite",
+            "reconstruction in.ply link.ply": "would overwrite",
+            "reconstruction in.xyz out_%03d.ply -parts all": "is a pattern for several parts",
+            "reconstruction in.xyz out.ply -sphere s%03d.ply": "is a pattern, but the output is one file",
+            "scan": "the shape is missing",
+            "scan sphere": "the output file",
+            "scan cube out.pcd": "unknown shape 'cube'",
+            "scan sphere out.stl": "extension",
+            "scan sphere out.ply -truth ./out.ply": "would overwrite",
+            "remesh in.xyz out.png": "out.png",
+            "remesh in.xyz out.stl -grid even": "out.stl",
+            "remesh in.tif out.tif": "geometry image",
+            "remesh in.xyz out.ply -harmonics ''": "-harmonics",
+            "remesh in.xyz out.ply -harmonics out.ply": "would overwrite",
+            "morph in.ply in.xyz m_%s.ply": "% that is not a frame number",
+            "morph in.ply in.xyz m_%d_%d.ply": "% that is not a frame number",
+            "morph in.ply in.xyz m_%12d.ply": "% that is not a frame number",
+            "morph in.ply in.xyz m_%%.ply": "% that is not a frame number",
+            "morph in.ply in.xyz m.ply -pairs ''": "-pairs",
+            "morph in.ply in.xyz m.ply -json m_001.ply": "would overwrite",
+            "morph in.ply m_001.ply m.ply": "would overwrite",
+            "texture in.ply in.ply": "would overwrite",
+            "texture in.ply out.ply -json out.png": "would overwrite",
+            "texture in.ply out.glb -image out.png": "-image",
+            "texture in.ply out.obj -image out.jpg": "out.jpg",
+            "texture in.ply out.obj -image 'a b.png'": "a b.png",
+            "texture in.ply 'a b.obj'": "a b",
+            "texture in.ply out.ply -image 'a\nb.png'": "a?b.png",
+        })  # fmt: skip
+
+    def test_options_that_make_no_sense_are_refused(self):
+        self.check_refused(WRONG_USAGE, {
+            "reconstruction in.xyz out.ply -ki 5": "'-ki'",
+            "reconstruction in.xyz out.ply -quiet=1": "-quiet",
+            "reconstruction in.xyz out.ply -x -- -k": "'-x'",
+            "reconstruction in.xyz out.ply -k": "missing",
+            "reconstruction in.xyz out.ply -k -quiet": "has no value",
+            "reconstruction in.xyz out.ply -k 5 -k 6": "more than once",
+            "reconstruction in.xyz out.ply -k 25.5": "option -k: '25.5'",
+            "reconstruction in.xyz out.ply -tolerance nan": "option -tolerance: 'nan'",
+            "reconstruction in.xyz out.ply -damping ''": "option -damping: ''",
+            "reconstruction in.xyz out.ply -method ball": "option -method: 'ball'",
+            "reconstruction in.xyz out.ply -outliers 1001": "option -outliers: '1001'",
+            "reconstruction in.xyz out.ply -history_frames 5": "'-history_frames'",
+            "reconstruction in.xyz out.ply -parts some": "'some' is not allowed",
+            "reconstruction in.xyz out.ply -parts each -min-points 3": "-min-points",
+            "reconstruction in.xyz out.ply -topology torus": "'torus' is not allowed",
+            "scan sphere out.pcd more": "one word too many: 'more'",
+            "scan sphere out.pcd -points 3": "option -points: '3'",
+            "scan sphere out.pcd -seed -1": "option -seed: '-1'",
+            "remesh in.xyz out.xyz -grid even -points 3": "-points",
+            "remesh in.xyz out.xyz -grid even -points 16777217": "-points",
+            "remesh in.xyz out.tif -side 10": "10 is even",
+            "remesh in.xyz out.tif -side 1": "-side",
+            "remesh in.xyz out.ply -grid cubic": "'cubic' is not allowed",
+            "remesh in.xyz out.ply -harmonics c.json -degree 513": "-degree",
+            "remesh in.xyz out.ply -area-weight 1.1": "-area-weight",
+            "remesh in.xyz out.ply -map-sweeps 1001": "-map-sweeps",
+            "morph in.ply in.xyz m.ply -frames 1": "-frames",
+            "morph in.ply in.xyz m.ply -align yes": "option -align: 'yes'",
+            "morph in.ply in.xyz m.ply -connectivity resampled -samples 11": "-samples",
+            "texture in.ply out.glb -chart mercator": "mercator",
+            "texture in.ply out.glb -size 15": "-size",
+            "texture in.ply out.glb -gutter 257": "-gutter",
+            "texture in.ply out.glb -checker 0": "-checker",
+        })  # fmt: skip
+
+    def test_options_that_do_nothing_are_refused(self):
+        lines = {
+            "reconstruction in.xyz out.ply -max-iterations 5": "-max-iterations does nothing with -method default",
+            "reconstruction in.xyz out.ply -min-points 60 -topology sphere": "-min-points does nothing with -parts all",
+            "reconstruction in.xyz out.ply -time-limit 1 -method paper": "-time-limit does nothing with -method paper",
+            "remesh in.xyz out.ply -side 9": "-side does nothing with ",
+            "remesh in.xyz out.ply -grid even -series": "-series does nothing with ",
+            "remesh in.xyz out.ply -grid even -sphere s.ply": "-sphere does nothing with ",
+            "remesh in.xyz out.ply -degree 5": "-degree does nothing with ",
+            "remesh in.xyz out.ply -map-sweeps 0 -area-weight 1": "-area-weight does nothing with ",
+            "remesh in.xyz out.tif -side 9 -points 9": "-side does nothing with ",
+            "remesh in.xyz out.tif -series": "-series does nothing with ",
+            "remesh in.xyz out.tif -offset 1,2,3": "-offset does nothing with ",
+            "remesh in.xyz out.tif -ascii": "-ascii does nothing with ",
+            "morph in.ply in.xyz m.ply -samples 100": "-samples does nothing with ",
+            "texture in.ply out.glb -ascii": "-ascii does nothing with ",
+        }
+        for option in "-points=9 -fit=linear -k=9 -map-sweeps=2 -grid=even -series -harmonics=c.json".split():
+            lines[f"remesh in.tif out.ply {option}"] = " does nothing with "
+        self.check_refused(WRONG_USAGE, lines)
+
+    def test_meshes_with_handles_have_no_map_to_one_sphere(self):
+        run("scan", "torus", "torus.xyz", "-points", 1500)
+        write_xyz("both.xyz", ellipsoid(2000, (1, 1, 1), (9, 0, 0)), np.loadtxt("torus.xyz"))
+        # A field of 18 x 18 points, of which 3 x 3 each are 0, 2.5 or 5 high, without walls.
+        row, column = np.divmod(np.arange(324), 18)
+        x, y = column + 0.5 * (row % 2), 0.75**0.5 * row
+        i, j = np.minimum(x // 3, 5), y // 3
+        write_xyz("tangle.xyz", np.stack([x, y, 2.5 * ((i * i + 2 * j * j + i * j) % 3)], axis=1))
+        cause = "'torus.xyz' has no map to one sphere: its mesh has 1 handle"
+        self.check_refused(FAILED, {
+            "reconstruction torus.xyz out.ply -sphere s.ply": cause,
+            "reconstruction both.xyz out%03d.ply -parts each -sphere s%03d.ply":
+                "part 2 of 'both.xyz' has no map to one sphere",
+            "remesh torus.xyz out.ply -handles auto": cause,
+            "morph in.xyz torus.xyz out.ply -handles auto": cause,
+            "reconstruction tangle.xyz out.ply -sphere s.ply":
+                "'tangle.xyz' has no map to one sphere: it is a tangle",
+        })  # fmt: skip
+        call("reconstruction", "torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", 0)
+        self.check_sphere(Mesh("s.ply"))
+
+    def test_files_that_cannot_be_read_are_a_failure(self):
+        write("empty.ply", "")
+        write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n")
+        write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n")
+        write("outliers.xyz", "0 0 0\n.1 0 0\n0 .1 0\n9 9 9\n-9 9 0\n")
+        write_xyz("open.xyz", hemisphere(500))
+        write("pairs.txt", "1 2\n1 two\n")
+        os.mkdir("folder.ply")
+        os.mkfifo("pipe.ply")
+        self.check_refused(FAILED, {
+            "reconstruction folder.ply out.ply": "is a directory",
+            "reconstruction pipe.ply out.ply": "not a regular file",
+            "reconstruction empty.ply out.ply": "is empty",
+            "reconstruction three.xyz out.ply": "at least 4",
+            "reconstruction in.xyz out.ply -parts each -min-points 501": "no part has min_points = 501",
+            "reconstruction flat.xyz out.ply -topology sphere":
+                "cannot mesh 'flat.xyz': all points lie in one plane",
+            "reconstruction outliers.xyz out.ply -topology sphere -outliers 0":
+                "all points lie in one plane (left out: 1 stray point)",
+            "remesh no.tif out.ply": "no.tif",
+            "remesh in.tif out.ply": "in.tif",
+            "remesh flat.xyz out.ply": "cannot mesh 'flat.xyz'",
+            "remesh open.xyz out.tif -surface open": "a geometry image has no openings",
+            "morph in.ply flat.xyz m.ply": "cannot mesh 'flat.xyz'",
+            "morph in.ply in.xyz m.ply -pairs pairs.txt -quiet": "line 2",
+        })  # fmt: skip
+
+    def test_files_that_cannot_be_written_are_a_failure_before_the_work(self):
+        os.mkdir("folder.ply")
+        os.symlink("missing/out.ply", "dangling.ply")
+        self.check_refused(FAILED, {
+            "reconstruction in.xyz in.xyz/out.ply": "out.ply",
+            "reconstruction in.xyz folder.ply": "is a directory",
+            "reconstruction in.xyz dangling.ply": "missing directory",
+            "remesh in.xyz out.ply -harmonics no/c.json": "missing directory",
+            "texture in.ply out.ply -image no/out.png": "missing directory",
+        })  # fmt: skip
+
+    def test_files_without_rights_are_a_failure(self):
+        unprivileged = {"user": 65534} if os.geteuid() == 0 else {}
+        try:
+            run("reconstruction", "-version", **unprivileged)
+        except PermissionError:
+            self.skipTest("the tool is in a place that root alone may enter")
+        os.mkdir("closed", 0o555)
+        write("secret.xyz", "1 2 3\n")
+        pathlib.Path("secret.xyz").chmod(0)
+        pathlib.Path("kept.ply").chmod(0o444)
+        lines = "secret.xyz out.ply", "in.xyz closed/out.ply", "in.xyz kept.ply"
+        self.check_refused(FAILED, {f"reconstruction {line}": "Permission denied" for line in lines}, **unprivileged)
+
+    def test_a_full_disk_is_a_failure_and_keeps_the_old_file(self):
+        full = ": File too large"
+        # Room for no output; or for a mesh, but not for more.
+        for size, rows in ((4000, {"reconstruction in.xyz kept.ply": f"cannot write 'kept.ply'{full}",
+                                   "texture in.ply a.obj -size 256": full,
+                                   "texture in.ply a.glb -size 256": full,
+                                   "scan sphere kept.ply": full}),
+                           (15000, {"remesh in.xyz kept.ply -harmonics c.json": full}),
+                           (30000, {"reconstruction in.xyz kept.ply -sphere s.stl": f"cannot write 's.stl'{full}",
+                                    "reconstruction in.xyz kept.ply -json r.json -method paper -tolerance 0":
+                                        f"cannot write 'r.json'{full}",
+                                    "remesh in.xyz a.tif -side 65": full})):  # fmt: skip
+            self.check_refused(FAILED, rows, **full_disk(size))
+
+    def test_a_full_standard_output_is_a_failure(self):
+        self.check_output_refused({"reconstruction in.xyz kept.ply": "standard output",
+                                   "scan sphere out.pcd -points 99": "standard output"})  # fmt: skip
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,337 @@
+#!/usr/bin/python3
+"""pcl_spherical_param_reconstruction: what is written, reported and printed:
+test_reconstruction_tool.py FOLDER_OF_THE_TOOLS"""
+
+import os
+import pathlib
+import pty
+import resource
+import subprocess
+import unittest
+
+import numpy as np
+from tool_test import (Mesh, ToolTest, call, ellipsoid, lengths, limited, program, read_json, report_of, run,
+                       volume, with_noise, write, write_ply, write_xyz)  # fmt: skip
+
+NORMALS, COLORS = "nx ny nz", "red green blue"
+# Sanitizers take address space and memory of their own.
+UNLESS_SANITIZED = unittest.skipIf(os.environ.get("SPHERICAL_PARAM_SANITIZE"), "sanitized")
+TYPES = {
+    "version": "", "input": "", "output": "", "offset": [0.1, 0.1, 0.1], "points": 0, "vertices": 0, "edges": 0,
+    "duplicates": 0, "triangles": 0, "components": 0, "genus": 0, "boundary_loops": 0, "self_intersections": 0,
+    "intersecting_triangles": 0, "peak_memory_bytes": 0, "usable": True, "closed": True, "manifold": True,
+    "oriented": True, "is_noisy": True, "is_out_of_time": True, "verdict": "", "findings": [], "openings": [],
+    "self_intersecting_pairs": [], "outliers": [], "boundary": [], "handles": [], "consolidation": None,
+    "smoothing": None, "stages": [{"name": "", "seconds": 0.1}],
+    "left_out": {"not_finite": [], "outliers": [], "other_parts": []},
+    "embedding": {"iterations": 0, "start_level": 0, "residual": 0.1, "centroid_norm": 0.1, "converged": True,
+                  "fallback_start": True, "stop_reason": "", "barrier": "", "residuals": [],
+                  "levels": [{"newton_iterations": 0}]},
+    "diagnosis": {"kind": "", "edges_outside_graph": 0.1, "looks_closed_genus0": True, "handles": [], "bridges": []},
+    "measures": {"volume": 0.1, "area": 0.1, "mean_edge_length": 0.1, "box_min": [0.1, 0.1, 0.1],
+                 "box_max": [0.1, 0.1, 0.1], "centroid": [0.1, 0.1, 0.1], "inertia": [[0.1], [0.1], [0.1, 0.1, 0.1]]},
+}  # fmt: skip
+
+
+def tool(*words, **more):
+    return call("reconstruction", *words, **more)
+
+
+def reported(*words):
+    return report_of("reconstruction", *words)
+
+
+def intersections(points, triangles):
+    """Pairs of triangles in general position: a side of one goes through the other, without a common point."""
+    corners = points[triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    one, other = np.nonzero(((low[:, None] <= high) & (high[:, None] >= low)).all(axis=2))
+
+    def sign(a, b, c, d):
+        return (np.cross(b - a, c - a) * (d - a)).sum(axis=1) > 0
+
+    found = set()
+    a, b, c = corners[other].transpose(1, 0, 2)
+    for k in range(3):
+        ends = triangles[one][:, [k, k - 1]]
+        p, q = points[ends].transpose(1, 0, 2)
+        through = (sign(a, b, c, p) != sign(a, b, c, q)) & (sign(p, q, a, b) == sign(p, q, b, c))
+        through &= sign(p, q, a, b) == sign(p, q, c, a)
+        through &= (triangles[other][:, :, None] != ends[:, None]).all(axis=(1, 2))
+        found |= {(min(pair), max(pair)) for pair in zip(one[through].tolist(), other[through].tolist())}
+    return [list(pair) for pair in sorted(found)]
+
+
+class ReconstructionTool(ToolTest):
+    """200 points of an ellipsoid in in.ply, with normals and colours."""
+
+    def setUp(self):
+        super().setUp()
+        self.points, self.normals = ellipsoid(200), ellipsoid(200, (1, 1, 1))
+        self.colors = np.round(127 * self.normals + 128)
+        write_ply("in.ply", self.points, self.normals, self.colors)
+
+    def same(self, values, others):
+        self.assertTrue(np.array_equal(values, others))
+
+    def test_mesh_and_sphere_have_the_same_triangles_and_keep_what_the_points_have(self):
+        run("reconstruction", "in.ply", "out.PLY", "-sphere", "sphere.ply")
+        out, sphere = Mesh("out.PLY"), Mesh("sphere.ply")
+        self.same(out.points, self.points)
+        self.same(out[NORMALS], self.normals)
+        self.same(out[COLORS], self.colors)
+        self.check_sphere(out)
+        self.assertGreater(volume(out.points, out.triangles), 0)
+        self.same(sphere.triangles, out.triangles)
+        self.same(sphere[COLORS], self.colors)
+        self.assertNotIn("nx", sphere)
+        # The rounding of three floats.
+        self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
+        run("reconstruction", "in.ply", "text.ply", "-ascii")
+        self.assertIn("format ascii", pathlib.Path("text.ply").read_text())
+
+    def test_what_further_columns_hold_is_said_and_comes_along(self):
+        others = [(i % 7 + 0.5, 10, 20, 30) for i in range(200)]
+        write_xyz("in.pts", np.hstack([self.points, others]), head="200")
+        said = "200 points; text, 7 columns: x y z intensity red green blue, separated by blanks\n"
+        self.assertIn(said, run("reconstruction", "in.pts", "out.ply", "-verbose"))
+        out = Mesh("out.ply")
+        self.same(out.points, self.points)
+        self.same(out["intensity red green blue"], others)
+        options = reported("in.pts", "out.ply", "-columns", "x,y,z,-,nx,ny,nz")["options"]
+        self.assertEqual(options["columns"], ["x", "y", "z", "-", "nx", "ny", "nz"])
+        self.assertNotIn("red", Mesh("out.ply"))
+        self.assertEqual(Mesh("out.ply")["nz"][0], 30)
+        self.assertIn("out.stl (without colours)\n", run("reconstruction", "in.pts", "out.stl"))
+        self.check_refused(2, {"reconstruction in.ply out.stl -columns x,y,z": "-columns",
+                               "reconstruction in.pts out.stl -columns x,y,q": "no x, y and z"})  # fmt: skip
+
+    def test_normals_that_are_null_are_replaced_by_those_of_the_mesh(self):
+        write_ply("in.ply", self.points, 0 * self.points)
+        run("reconstruction", "in.ply", "out.ply")
+        written = Mesh("out.ply")[NORMALS]
+        self.assertLess(np.abs(lengths(written) - 1).max(), 1e-6)
+        self.assertGreater((written * self.points).sum(axis=1).min(), 0)
+
+    def test_an_offset_is_taken_off_where_single_precision_is_too_coarse(self):
+        utm = self.points + (512345.678, 5412345.25, 301.5)
+        write_ply("utm.ply", utm)
+        self.assertEqual(reported("utm.ply", "out.ply")["offset"], [0, 0, 0])
+        self.check_all_in(utm, Mesh("out.ply").points)
+        self.assertEqual(reported("in.ply", "out.stl")["offset"], [0, 0, 0])
+        for name in ("out.stl", "out.glb"):
+            self.assertEqual(reported("utm.ply", name)["offset"], [512346, 5412345, 302])
+            self.assertIn(f"{name} (less 512346, 5412345, 302)\n", run("reconstruction", "utm.ply", name))
+        offset = [512345, 5412345.25, 300]
+        report = reported("utm.ply", "out.ply", "-offset", "512345,5412345.25,300")
+        self.assertEqual(report["options"]["offset"], offset)
+        self.assertLess(np.abs(Mesh("out.ply").points + offset - utm).max(), 1e-6)
+        self.check_refused(2, {"reconstruction utm.ply out.stl -offset 1,2": "three numbers"})
+
+    def test_a_ply_file_marks_the_vertices_that_were_added_to_each_surface(self):
+        whole = np.concatenate([ellipsoid(600, (1, 1, 1), (x, 0, 0)) for x in (0, 5)])
+        given = whole[np.abs(whole[:, 2]) < 0.8]  # unit spheres without caps
+        write_ply("two.ply", given, given, np.full_like(given, 99))
+
+        def filled(*options):
+            return tool("two.ply", *options, "-surface", "closed", "-fill", "smooth").stderr
+
+        def marks(name):
+            out = Mesh(name)
+            is_given = [(given == point).all(axis=1).any() for point in out.points]
+            self.same(out["added"][:, 0], np.where(is_given, 0, 1))
+            self.assertIn("red", out)
+            return out["added"].sum()
+
+        filled("out.ply", "-json", "r.json")
+        marked = marks("out.ply")
+        self.assertGreater(marked, 0)
+        self.assertEqual(len(read_json("r.json")["parts"]), 2)
+        filled("text.ply", "-ascii")
+        self.assertEqual(pathlib.Path("text.ply").read_text().count(" 99 99 99 1\n"), marked)
+        filled("out_%03d.ply")
+        self.assertEqual(marks("out_000.ply") + marks("out_001.ply"), marked)
+        self.assertIn("give -fill flat", filled("out.ply", "-sphere", "s.ply"))
+        run("reconstruction", "two.ply", "out.ply", "-surface", "closed")
+        self.assertNotIn("added", Mesh("out.ply"))
+
+    def test_duplicates_and_points_that_are_not_finite_are_left_out_and_counted(self):
+        parts = [[point, self.points[0]] if i % 10 == 0 else [point] for i, point in enumerate(self.points)]
+        write_xyz("in.xyz", [(np.nan, 0, 0)], *parts, [(1, np.inf, 0)])
+        report = reported("in.xyz", "out.ply")
+        self.check_entries(report, {"points": 222, "left_out": {"not_finite": [0, 221]}, "duplicates": 20,
+                                    "vertices": 200, "findings": []})  # fmt: skip
+        self.assertIn("\nleft out  20 duplicates, 2 points that are not finite\n", tool("in.xyz", "out.ply").stdout)
+        self.same(Mesh("out.ply").points, self.points)
+
+    def test_a_time_limit_that_ends_the_work_is_said(self):
+        run("scan", "ellipsoid", "in.xyz", "-points", 800, "-noise", 0.5)
+        ended = reported("in.xyz", "out.ply", "-time-limit", 0, "-parts", "largest")
+        self.check_entries(ended, {"is_out_of_time": True, "options": {"time_limit": 0}})
+        self.assertIn("time limit", str(ended["findings"]))
+        self.check_sphere(Mesh("out.ply"))
+        self.check_entries(reported("in.xyz", "out.ply"), {"is_out_of_time": False, "options": {"time_limit": None}})
+
+    def check_types(self, report, example, path=""):
+        """The members of an example are there, with values of the same types; of lists the first."""
+        self.assertIs(type(report), type(example), path)
+        if isinstance(example, (dict, list)):
+            for key, value in example.items() if isinstance(example, dict) else enumerate(example):
+                self.check_types(report[key], value, f"{path}/{key}")
+
+    def test_report_has_all_keys_with_their_types(self):
+        report = reported("in.ply", "out.ply", "-starts=4")
+        self.check_types(report, TYPES)
+        # Steps that smooth the embedding are none to a solution.
+        self.check_entries(report, {"points": 200, "triangles": 396, "closed": True, "manifold": True,
+                                    "oriented": True, "genus": 0, "diagnosis": {"kind": "closed_genus0"},
+                                    "embedding": {"stop_reason": "unfinished"}})  # fmt: skip
+        out = Mesh("out.ply")
+        self.assertAlmostEqual(report["measures"]["volume"], volume(out.points, out.triangles), delta=1e-9)
+
+    def test_openings_are_reported_and_filled_if_asked(self):
+        count = 1500  # the spiral goes from one end to the other
+        write_ply("open.ply", ellipsoid(2000)[:count])
+        done, report = tool("open.ply", "out.ply", "-json", "r.json"), read_json("r.json")
+        self.check_entries(report, {"closed": False, "diagnosis": {"kind": "open"}})
+        self.assertEqual([report["openings"][0]["is_filled"], len(report["boundary"])], [False, 1])
+        # V - E + F = 1.
+        self.assertEqual(len(Mesh("out.ply").triangles), 2 * count - 2 - len(report["boundary"][0]))
+        self.assertIn("\nverdict   A sound mesh with 1 opening.\n", done.stdout)
+        self.assertEqual(done.stderr, "")
+        closed = reported("open.ply", "out.ply", "-fill-holes", 1000)
+        self.assertEqual([closed["closed"], closed["openings"][0]["is_filled"]], [True, True])
+
+    def test_consolidation_is_reported_and_written(self):
+        write_ply("noisy.ply", with_noise(ellipsoid(1500), 0.01))
+        done = tool("noisy.ply", "out.ply", "-consolidation", "auto", "-json", "r.json")
+        consolidation = read_json("r.json")["consolidation"]
+        self.assertEqual(len(Mesh("out.ply").points), 1500 - consolidation["merged"])
+        self.assertAlmostEqual(consolidation["noise"], 0.01, delta=0.005)
+        self.assertTrue(done.stdout.startswith("read      noisy.ply, 1,500 points\n"))
+        self.assertIn("\nmoved     by 0.0", done.stdout)
+        self.assertEqual(done.stderr, "")
+
+    def test_options_reach_the_library_and_those_without_effect_are_null(self):
+        paper = reported("in.ply", "out.ply", "--method=paper", "-max-iterations=3", "-weights", "inverse")
+        iteration = paper["embedding"]
+        self.check_entries(iteration, {"iterations": 3, "stop_reason": "iteration_limit", "levels": []})
+        # A residual before each step and at the end.
+        self.assertEqual([len(iteration["residuals"]), iteration["residuals"][-1]], [4, iteration["residual"]])
+        self.check_entries(paper["options"], {"max_iterations": 3, "weights": "inverse", "k": 25, "starts": None,
+                                              "tolerance": None, "surface": None})  # fmt: skip
+        standard = reported("in.ply", "out.ply", "-starts", 5)
+        self.check_entries(standard["options"], {"starts": 5, "max_iterations": None, "k": None})
+        self.assertLess(standard["embedding"]["levels"][0]["edges"], 200 * 4)
+
+    def test_findings_name_points_of_the_input_behind_those_left_out(self):
+        # Outliers and points that are not finite before all others shift the vertices.
+        run("scan", "bowl", "plain.xyz", "-points", 1000)
+        write("shifted.xyz", "nan 0 0\n5 5 5\n5 5 5\n" + pathlib.Path("plain.xyz").read_text())
+        closed = "out.ply", "-topology", "sphere"
+        plain, shifted = (reported(name, *closed, "-outliers", 6) for name in ("plain.xyz", "shifted.xyz"))
+        self.assertEqual(len(Mesh("out.ply").points), 1000)
+        self.assertEqual(plain["left_out"]["outliers"], [])
+        self.check_entries(shifted, {"left_out": {"outliers": [1, 2], "not_finite": [0]}, "outliers": [],
+                                     "vertices": 1000})  # fmt: skip
+        self.assertIn("outliers", [stage["name"] for stage in shifted["stages"]])
+        self.assertEqual([len(plain["openings"]), len(shifted["openings"])], [1, 1])
+        self.assertEqual(plain["diagnosis"]["kind"], "open")
+        self.assertGreater(plain["openings"][0]["triangles"], 0)
+        self.assertEqual(shifted["openings"][0]["loop"], [vertex + 3 for vertex in plain["openings"][0]["loop"]])
+        self.assertEqual(reported("shifted.xyz", *closed)["outliers"], [1])
+
+    def test_self_intersections_of_the_report_are_those_of_the_mesh(self):
+        run("scan", "hand", "mess.ply", "-points", 1000)
+        done, report = tool("mess.ply", "out.ply", "-method", "paper", "-json", "r.json"), read_json("r.json")
+        out = Mesh("out.ply")
+        pairs = intersections(out.points, out.triangles)
+        self.assertEqual(report["self_intersections"], len(pairs))
+        self.assertGreater(len(pairs), 1000)
+        self.assertEqual(report["self_intersecting_pairs"], pairs[:1000])  # no more are listed
+        self.assertEqual([done.returncode, report["usable"]], [3, False])
+        # What it encloses means nothing.
+        self.check_entries(report["measures"], {"volume": None, "centroid": None, "inertia": None})
+        self.assertNotIn("centroid", done.stdout)
+
+    def test_smoothing_moves_the_points_alone_and_tells_how_far(self):
+        noisy = with_noise(ellipsoid(1000), 0.01)
+        write_ply("noisy.ply", noisy)
+        report, out = reported("noisy.ply", "out.ply", "-smoothing", 3), Mesh("out.ply")
+        moved = lengths(out.points - noisy).max()
+        self.assertGreater(moved, 0.001)
+        self.assertAlmostEqual(report["smoothing"]["max_displacement"], moved, delta=1e-6)  # of single precision
+        self.assertAlmostEqual(report["measures"]["volume"], volume(noisy, out.triangles), delta=1e-9)
+
+    @UNLESS_SANITIZED
+    def test_absurd_numbers_of_threads_are_not_started(self):
+        write_xyz("large.xyz", ellipsoid(20000))
+        # Each thread takes address space.
+        run("reconstruction", "large.xyz", "out.ply", "-threads", 1024, **limited(resource.RLIMIT_AS, 3 << 30))
+        self.assertTrue(os.path.exists("out.ply"))
+
+    @UNLESS_SANITIZED
+    def test_reported_memory_is_that_of_the_tool_alone(self):
+        large = bytearray(b"x" * (100 << 20))  # what the process that starts the tool has in use is no part of it
+        self.assertLess(reported("in.ply", "out.ply")["peak_memory_bytes"], 60 << 20)
+        self.assertEqual(large[-1:], b"x")
+
+    @UNLESS_SANITIZED
+    def test_takes_less_than_one_kilobyte_a_point(self):
+        peaks = []
+        for count in (200, 30000):
+            write_xyz("many.xyz", ellipsoid(count))
+            peaks.append(reported("many.xyz", "out.ply")["peak_memory_bytes"])
+        self.assertLess(peaks[1] - peaks[0], 1024 * 30000)
+
+    def test_prints_six_lines_and_warnings_apart(self):
+        write_xyz("noisy.xyz", [(np.nan, 0, 0), (9, 9, 9)], self.points)
+        clean = tool("noisy.xyz", "out.ply")
+        self.assertEqual([clean.stderr, clean.stdout.count("\n")], ["", 6])
+        self.assertTrue(clean.stdout.startswith("read      noisy.xyz, 202 points\n"
+                                                "verdict   A sound mesh; 1 stray point left out.\n"
+                                                "made      200 vertices, 396 triangles\n"
+                                                "time      "), clean.stdout)  # fmt: skip
+        self.assertIn("\nleft out  1 point that is not finite, 1 stray point\nwritten   out.ply\n", clean.stdout)
+        for words in ((), ("-json", "-")):
+            self.assertEqual(tool("noisy.xyz", "out.ply", "-topology", "sphere", *words).stderr,
+                             "warning: 1 stray point in the mesh: try -topology scan\n")  # fmt: skip
+        self.assertEqual(tool("noisy.xyz", "out.ply", "-quiet").stderr, "")
+
+    def test_verbose_prints_options_stages_and_tables(self):
+        said = tool("in.ply", "out.ply", "-smoothing", 3, "-verbose", text=False).stdout.decode()
+        self.assertNotRegex(said, "[\r\033]")
+        for line in ("\n  method              default\n", "\n  embedding  ", "\n  write  ", "\n  nodes  edges  sweeps ",
+                     "\n  volume  ", "\n  centroid  ", "\nverdict   A sound mesh.\n"):  # fmt: skip
+            self.assertIn(line, said)
+
+    def test_each_finding_is_a_command_that_helps(self):
+        run("scan", "pair", "pair.ply", "-points", 1000)
+        run("scan", "bowl", "bowl.ply", "-points", 2000)
+        write_xyz("stray.xyz", [(9, 9, 9)], ellipsoid(800))
+        for name in ("pair.ply", "bowl.ply", "stray.xyz"):
+            said = tool(name, "out.ply", "-topology", "sphere").stderr
+            self.assertIn(": try -", said)
+            option, value = said.split(": try ")[1].split()[:2]
+            better = tool(name, "out.ply", option, value, "-strict")
+            self.assertEqual([better.returncode, better.stderr], [0, ""], (name, option, value))
+
+    def test_a_terminal_shows_a_bar_of_what_takes_long(self):
+        run("scan", "ellipsoid", "in.ply", "-points", 1000)
+        terminal, end = pty.openpty()
+        # Some seconds of work on any machine.
+        words = "in.ply out.ply -method paper -tolerance 0 -max-iterations 100000".split()
+        said = b""
+        with subprocess.Popen([program("reconstruction"), *words], stdout=end, stderr=subprocess.DEVNULL):
+            os.close(end)
+            try:
+                while part := os.read(terminal, 4096):
+                    said += part
+            except OSError:  # its other end is closed
+                os.close(terminal)
+        self.assertIn(b"\r  embedding           [", said)
+        self.assertIn(b"\r\033[Kread", said)  # it does not stay
+
+
+if __name__ == "__main__":
+    unittest.main()

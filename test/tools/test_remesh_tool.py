@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+"""pcl_spherical_param_remesh: test_remesh_tool.py FOLDER_OF_THE_TOOLS"""
+
+import pathlib
+import unittest
+
+import numpy as np
+from tool_test import (Mesh, ToolTest, call, ellipsoid, lengths, read_json, report_of, run, volume, write_ply,
+                       write_xyz)  # fmt: skip
+
+AXES, CENTER = (2, 1, 0.7), (10, 0, 0)
+NORMALS, COLORS = "nx ny nz", "red green blue"
+
+
+def unit(vectors):
+    return vectors / lengths(vectors)[:, None]
+
+
+def colors_at(directions):
+    """Linear, so that what is interpolated between the points is as good as the surface there."""
+    return 127.5 * (unit(directions) + 1)
+
+
+def directions_of(points):
+    """The directions of points near the ellipsoid, of length 1 on it."""
+    return (points - CENTER) / AXES
+
+
+class RemeshTool(ToolTest):
+    """in.ply has 500 points of the ellipsoid, coloured by their directions."""
+
+    def setUp(self):
+        super().setUp()
+        points = ellipsoid(500, AXES, CENTER)
+        write_ply("in.ply", points, colors=np.round(colors_at(directions_of(points))))
+
+    def remeshed(self, *options):
+        run("remesh", "in.ply", "out.ply", *options)
+        return Mesh("out.ply")
+
+    def check_on_the_surface(self, mesh):
+        directions = directions_of(mesh.points)
+        self.assertLess(np.abs(lengths(directions) - 1).max(), 0.01)
+        self.assertGreater((mesh[NORMALS] * unit(directions / AXES)).sum(axis=1).min(), 0.98)
+        self.assertLess(np.abs(mesh[COLORS] - colors_at(directions)).max(), 6)
+
+    def same(self, mesh, other, with_points=True):
+        self.assertTrue(np.array_equal(mesh.triangles, other.triangles))
+        self.assertTrue(not with_points or np.array_equal(mesh.points, other.points))
+
+    def test_meshes_are_closed_on_the_surface_and_have_the_nearest_number_of_points(self):
+        for grid, made in (("icosahedral", 1002), ("octahedral", 1026)):  # 10 f^2 + 2 and 4 f^2 + 2
+            with self.subTest(grid):
+                mesh = self.remeshed("-grid", grid, "-points", 1000, "-sphere", "s.ply")
+                self.assertEqual(len(mesh.points), made)
+                self.check_sphere(mesh)
+                self.check_on_the_surface(mesh)
+                sphere = Mesh("s.ply")
+                self.same(sphere, mesh, with_points=False)
+                self.assertTrue(np.array_equal(sphere[COLORS], mesh[COLORS]))
+                self.assertNotIn("nx", sphere)
+                self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
+
+    def test_even_clouds_have_that_many_points_on_the_surface(self):
+        cloud = self.remeshed("-grid", "even", "-points", 400)
+        self.assertEqual([len(cloud.points), len(cloud.triangles)], [400, 0])
+        self.check_on_the_surface(cloud)
+
+    def test_output_has_as_many_points_as_the_mesh_unless_told(self):
+        self.assertEqual(report_of("remesh", "in.ply", "out.ply")["points"], 492)
+        self.assertEqual(report_of("remesh", "in.ply", "out.tif")["points"], 486)
+        self.check_entries(report_of("remesh", "in.ply", "out.pcd", "-grid", "even"),
+                           {"points": 500, "triangles": 0, "closed": None})  # fmt: skip
+
+    def test_mesh_of_a_geometry_image_is_the_octahedral_grid_bit_for_bit(self):
+        run("remesh", "in.ply", "image.tif", "-points", 1000)
+        self.check_entries(report_of("remesh", "in.ply", "sized.TIFF", "-side", 33),
+                           {"points": 32 * 32 + 2, "grid": {"kind": "octahedral", "side": 33},
+                            "options": {"grid": None}})  # fmt: skip
+        self.assertTrue(pathlib.Path("sized.TIFF").read_bytes() == pathlib.Path("image.tif").read_bytes())
+        self.check_entries(report_of("remesh", "image.tif", "back.ply", "-sphere", "sphere.ply"),
+                           {"points": 1026, "closed": True, "grid": {"side": 33}})  # fmt: skip
+        grid = self.remeshed("-grid", "octahedral", "-points", 1000)
+        self.same(Mesh("back.ply"), grid)
+        self.same(Mesh("sphere.ply"), grid, with_points=False)
+
+    def test_harmonics_of_a_sphere_are_its_center_and_its_radius(self):
+        write_xyz("sphere.xyz", ellipsoid(1000, (3, 3, 3), CENTER))
+        report = report_of("remesh", "sphere.xyz", "series.ply", "-series", "-harmonics", "c.json", "-degree", 4,
+                           "-points", 642)  # fmt: skip
+        file = read_json("c.json")
+        self.assertEqual([file["degree"], type(file["convention"])], [4, str])
+        self.assertLess(file["rms_residual"], 0.05)
+        self.assertEqual(file["rms_residual"], report["harmonics"]["rms_residual"])
+        coefficients = file["coefficients"]
+        self.assertEqual(len(coefficients), 25)
+        self.assertEqual([(each["l"], each["m"]) for each in coefficients[:4]], [(0, 0), (1, -1), (1, 0), (1, 1)])
+        # The mean of the position over the sphere is c_00 Y_00.
+        self.assertLess(np.abs(np.divide(coefficients[0]["xyz"], (4 * np.pi) ** 0.5) - CENTER).max(), 0.02)
+        # The mesh of the series is the series at the points of the sphere.
+        series = Mesh("series.ply")
+        self.assertEqual(len(series.points), 642)
+        self.check_sphere(series)
+        self.assertLess(np.abs(lengths(series.points - CENTER) - 3).max(), 0.05)
+
+    def test_report_is_that_of_the_written_mesh(self):
+        report = report_of("remesh", "in.ply", "out.ply", "-points", 1000)
+        self.check_entries(report, {
+            "input_points": 500, "vertices": 500, "mesh_triangles": 996, "mesh_self_intersections": 0,
+            "points": 1002, "triangles": 2000, "components": 1, "genus": 0, "self_intersections": 0,
+            "closed": True, "manifold": True, "oriented": True, "harmonics": None,
+            "grid": {"kind": "icosahedral", "frequency": 10, "side": None},
+            "untangling": {"self_intersections_before": 0, "moved": 0},
+            "options": {"points": 1000, "fit": "smooth", "area_weight": 0.5, "map_sweeps": 40, "degree": None},
+        })  # fmt: skip
+        self.assertIs(type(report["embedding_distortion"]["flipped_triangles"]), int)
+        mesh = Mesh("out.ply")
+        self.assertAlmostEqual(report["volume"], volume(mesh.points, mesh.triangles), delta=1e-9)
+        distance = report["distance"]
+        self.assertTrue(distance["mean"] <= distance["rms"] <= distance["max"] < 0.05)
+
+    def test_options_of_the_map_and_the_fit_reach_them(self):
+        even, conformal, valid_only = (report_of("remesh", "in.ply", "out.ply", *options) for options in (
+            ("-area-weight", 0.9), ("-area-weight", 0), ("-map-sweeps", 0)))  # fmt: skip
+        self.assertLess(even["area_distortion"]["mean"], conformal["area_distortion"]["mean"])
+        self.assertNotEqual(valid_only["area_distortion"], even["area_distortion"])
+        self.assertIsNone(valid_only["options"]["area_weight"])
+        smooth, linear = (self.remeshed("-fit", fit).points for fit in ("smooth", "linear"))
+        self.assertFalse(np.array_equal(smooth, linear))
+
+    def test_verbose_prints_stages_and_verdict(self):
+        done = call("remesh", "in.ply", "out.ply", "-points", 1000, "-verbose")
+        self.assertEqual([done.returncode, done.stderr], [0, ""])
+        for text in ("\n  fit                 smooth\n", "\n  map ", "\n  resample ",
+                     "\n  points              1002\n", "\n  flipped triangles   0\n",
+                     "\n  area distortion     mean 1.", "\n  closed              yes\n",
+                     "\n  self intersections  0\n", "\n  distance            mean 0.",
+                     "\nverdict   A sound mesh.\n", "\nwritten   out.ply\n"):  # fmt: skip
+            self.assertIn(text, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
