@@ -76,6 +76,7 @@ class BadInput(ToolTest):
         os.symlink("in.ply", "link.ply")
         self.check_refused(WRONG_USAGE, {
             "reconstruction 'in\n.las' out.ply": "'in?.las'",
+            "reconstruction - out.ply": "'-' has an extension",
             "reconstruction in.xyz out": "'out' has an extension",
             "reconstruction in.xyz out.ply -sphere ''": "-sphere",
             "reconstruction in.xyz ./a.obj -sphere a.obj": "would overwrite",
@@ -116,7 +117,6 @@ class BadInput(ToolTest):
             "reconstruction in.xyz out.ply -k": "missing",
             "reconstruction in.xyz out.ply -k -quiet": "has no value",
             "reconstruction in.xyz out.ply -k 5 -k 6": "more than once",
-            "reconstruction in.xyz out.ply -k 25.5": "option -k: '25.5'",
             "reconstruction in.xyz out.ply -tolerance nan": "option -tolerance: 'nan'",
             "reconstruction in.xyz out.ply -damping ''": "option -damping: ''",
             "reconstruction in.xyz out.ply -method ball": "option -method: 'ball'",
@@ -134,7 +134,6 @@ class BadInput(ToolTest):
             "remesh in.xyz out.tif -side 1": "-side",
             "remesh in.xyz out.ply -grid cubic": "'cubic' is not allowed",
             "remesh in.xyz out.ply -harmonics c.json -degree 513": "-degree",
-            "remesh in.xyz out.ply -area-weight 1.1": "-area-weight",
             "remesh in.xyz out.ply -map-sweeps 1001": "-map-sweeps",
             "morph in.ply in.xyz m.ply -frames 1": "-frames",
             "morph in.ply in.xyz m.ply -align yes": "option -align: 'yes'",
@@ -144,6 +143,19 @@ class BadInput(ToolTest):
             "texture in.ply out.glb -gutter 257": "-gutter",
             "texture in.ply out.glb -checker 0": "-checker",
         })  # fmt: skip
+
+    def test_numbers_are_the_whole_text_and_in_their_range(self):
+        for line, texts in (("reconstruction in.xyz out.ply -k", "25.5 99999999999999999999"),
+                            ("remesh in.xyz out.ply -area-weight", "-1e-9 1.001 nan inf 1e999")):  # fmt: skip
+            rows = {f"{line} '{text}'": f"{line.split()[-1]}: '{text}' is not allowed"
+                    for text in ("", "+", "+-1", "1x", " 1", "0,5", "0x5", *texts.split())}  # fmt: skip
+            self.check_refused(WRONG_USAGE, rows)
+        self.check_refused(WRONG_USAGE, {"reconstruction in.xyz out.ply -offset 0,0,1e999": "three numbers"})
+
+    def test_unknown_options_are_answered_with_the_nearest(self):
+        for word, nearest in (("-quite", "-quiet"), ("--seeds=x", "-seed"), ("-verson", "-version")):
+            said = run("reconstruction", "in.xyz", "out.ply", word, code=WRONG_USAGE)
+            self.assertIn(f"\n  remedy: did you mean {nearest}? ", said)
 
     def test_options_that_do_nothing_are_refused(self):
         lines = {
@@ -193,7 +205,6 @@ class BadInput(ToolTest):
         write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n")
         write("outliers.xyz", "0 0 0\n.1 0 0\n0 .1 0\n9 9 9\n-9 9 0\n")
         write_xyz("open.xyz", hemisphere(500))
-        write("pairs.txt", "1 2\n1 two\n")
         os.mkdir("folder.ply")
         os.mkfifo("pipe.ply")
         self.check_refused(FAILED, {
@@ -211,8 +222,20 @@ class BadInput(ToolTest):
             "remesh flat.xyz out.ply": "cannot mesh 'flat.xyz'",
             "remesh open.xyz out.tif -surface open": "a geometry image has no openings",
             "morph in.ply flat.xyz m.ply": "cannot mesh 'flat.xyz'",
-            "morph in.ply in.xyz m.ply -pairs pairs.txt -quiet": "line 2",
         })  # fmt: skip
+
+    def test_pairs_that_make_no_sense_are_refused_with_their_line(self):
+        for text, cause in (("", "is empty"),
+                            ("1 2\n1\n", "line 2: 1 word make"),
+                            ("# nothing\n1 2 3\n", "line 2"),
+                            ("1 2 3 4 5 6 7", "line 1"),
+                            ("\n\n1 two", "line 3: words like 'two'"),
+                            ("1.5 2", "line 1"),
+                            ("20 2", "unknown point '20' in a cloud of 20"),
+                            ("2 -1", "unknown point '-1' in a cloud of 500"),
+                            ("1 2 3 4 5 nan", "line 1")):  # fmt: skip
+            write("pairs.txt", text)
+            self.check_refused(FAILED, {"morph in.ply in.xyz m.ply -pairs pairs.txt -quiet": cause})
 
     def test_files_that_cannot_be_written_are_a_failure_before_the_work(self):
         os.mkdir("folder.ply")

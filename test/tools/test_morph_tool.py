@@ -39,16 +39,23 @@ class MorphTool(ToolTest):
         self.assertEqual(len(report["rotation"]), 3)
 
     def test_pairs_are_honoured_or_said_to_be_impossible(self):
-        # Near points, not at them.
-        near = np.add([self.first[150], self.second[112]], (0.01, 0, -0.01)).ravel()
-        write("pairs.txt", f"10 12\n299 219\n{' '.join(map(str, near))}\n10 40")
-        report = report_of("morph", "a.ply", "b.ply", "m.ply", "-frames", 2, "-pairs", "pairs.txt")["pairs"]
-        self.check_entries(report, {"given": 4, "honoured": 3})
-        self.assertEqual(len(report["impossible"]), 1)
-        self.check_entries(report["impossible"][0], {"line": 4, "points": [10, 40]})
+        # The last points are the first one again, and one that is left out.
+        write_ply("a.ply", np.concatenate([self.first, self.first[:1], [(9, 9, 9)]]))
+        corner = lengths(self.first - (9, 8, 9)).argmin()
+        other = round(corner * 220 / 300)
+        near_first, near_second, exact = (" ".join(map(str, place)) for place in (
+            self.first[150] + (0.01, 0, -0.01), self.second[112] + (0.01, 0, -0.01), self.second[other]))  # fmt: skip
+        write("pairs.txt", f"# the top, then the bottom\n10 12\n\n  300, 1 # a repeated one\n299 219\n"
+              f"{near_first} ; {near_second}\r\n9 8 9 {exact}\n10 40\n301 5\n0 7")  # fmt: skip
+        report = report_of("morph", "a.ply", "b.ply", "m.ply", "-frames", 2, "-pairs", "pairs.txt", "-outliers", 6)
+        report = report["pairs"]
+        self.check_entries(report, {"given": 8, "honoured": 5})
+        self.assertEqual([(pair["line"], pair["points"]) for pair in report["impossible"]],
+                         [(8, [10, 40]), (9, [301, 5]), (10, [0, 7])])  # fmt: skip
         self.assertLess(report["worst_pair"], 1e-9)
-        at = lengths(Mesh("m_000.ply").points - self.first[150]).argmin()
-        self.assertTrue((Mesh("m_001.ply").points[at] == self.second[112]).all())
+        for one, two in ((10, 12), (0, 1), (299, 219), (150, 112), (corner, other)):
+            at = lengths(Mesh("m_000.ply").points - self.first[one]).argmin()
+            self.assertTrue((Mesh("m_001.ply").points[at] == self.second[two]).all())
 
     def test_resampled_frames_match_in_area_and_have_the_names_of_the_pattern(self):
         said = run("morph", "a.ply", "b.ply", "m%02d.ply", "-frames", 3, "-connectivity", "resampled", "-samples", 642,

@@ -224,6 +224,25 @@ class ReconstructionTool(ToolTest):
         self.check_entries(standard["options"], {"starts": 5, "max_iterations": None, "k": None})
         self.assertLess(standard["embedding"]["levels"][0]["edges"], 200 * 4)
 
+    def test_options_are_taken_in_every_notation_and_order(self):
+        os.rename("in.ply", "-in.ply")
+        for line in ("-starts +7 -offset -1,2,3 -quiet -- -in.ply out.ply",
+                     "--quiet --starts 7 --offset -1,2,3 -- -in.ply out.ply",
+                     "-offset=-1,2,3 ./-in.ply -starts=7 -quiet out.ply",
+                     "./-in.ply --starts=7 out.ply --quiet --offset=-1,+2.,3"):  # fmt: skip
+            self.assertEqual(run("reconstruction", "-json", "r.json", *line.split()), "")
+            self.check_entries(read_json("r.json")["options"], {"starts": 7, "offset": [-1, 2, 3]})
+        report = reported("./-in.ply", "out.ply", "-offset", "+.25,-1e-3,-1e-999")
+        self.assertEqual(report["options"]["offset"], [0.25, -1e-3, 0])
+
+    def test_help_of_all_options_is_that_for_experts(self):
+        brief, all_options = run("reconstruction", "--help"), run("reconstruction", "-h", "expert")
+        self.assertNotIn("\n  -ascii ", brief)
+        self.assertIn("-h expert", brief)
+        places = [all_options.index(text) for text in ("\n  -surface ", "\n  -sphere FILE ", "\nExpert options:\n",
+                                                       "\n  -ascii ")]  # fmt: skip
+        self.assertEqual(places, sorted(places))
+
     def test_findings_name_points_of_the_input_behind_those_left_out(self):
         # Outliers and points that are not finite before all others shift the vertices.
         run("scan", "bowl", "plain.xyz", "-points", 1000)
