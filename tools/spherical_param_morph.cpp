@@ -51,8 +51,7 @@ struct Settings {
   std::string output;
   std::size_t frames = 20;
   std::vector<std::string> files;  ///< of the frames
-  FileFormat format = nullptr;
-  std::string pairs;  ///< empty: none
+  std::string pairs;               ///< empty: none
   MorphOptions morph;
   SurfaceFit fit = SurfaceFit::Linear;
   bool match = false;
@@ -107,10 +106,8 @@ std::vector<std::string> frameNames(const std::string& pattern, std::size_t fram
                                                 : 1;
   std::vector<std::string> names;
   for (std::size_t frame = 0; frame < frames; ++frame) {
-    const std::string number = std::to_string(frame);
     names.push_back(pattern.substr(0, begin) + parts[1].str() + (has_placeholder ? "" : "_") +
-                    std::string(digits - std::min(digits, number.size()), '0') + number +
-                    parts[3].str());
+                    withZeros(frame, digits) + parts[3].str());
   }
   return names;
 }
@@ -122,8 +119,7 @@ void parse(const CommandLine& command_line, Settings& settings) {
   for (const std::string& input : settings.inputs) {
     requireFormat(input, FileUse::ReadCloud);
   }
-  settings.format = requireFormat(settings.output, FileUse::WriteMesh);
-  command_line.apply(optionsOf(settings));
+  requireFormat(settings.output, FileUse::WriteMesh);
   settings.files = frameNames(settings.output, settings.frames);
   if (!settings.isResampled()) {
     command_line.refuse({"samples"}, "-connectivity all", "-connectivity resampled");
@@ -257,7 +253,7 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
 void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
            ToolRun& run) {
   run.console.begin("write");
-  morph.offset = settings.report.offsetOf(settings.format, *clouds[0].cloud.data);
+  morph.offset = settings.report.offsetOf(settings.output, *clouds[0].cloud.data);
   PointData vertices;
   vertices.has_alpha =
       morph.hasColors() && (clouds[0].cloud.data->has_alpha || clouds[1].cloud.data->has_alpha);
@@ -271,9 +267,7 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
     }
     MeshView mesh(vertices, morph.result.triangles);
     mesh.shiftBy(morph.offset);
-    OutputFile& file = run.open(settings.files[frame]);
-    writeMesh(file, mesh, settings.format, settings.report.encoding());
-    file.finish();  // not all of them are open at a time
+    run.write(settings.files[frame], mesh);
     run.console.update(t);
   }
   morph.stages.push_back(run.console.end(counted(settings.frames, "frame")));
@@ -338,7 +332,7 @@ Summary summaryOf(const Settings& settings, const std::array<MappedCloud, 2>& cl
   both.made = meshSize(morph.vertexCount(), morph.result.triangles.cols());
   both.written =
       outputsOf(settings.report, {settings.files.front() + " to " + settings.files.back()});
-  both.written.front() += notWritten(morph.hasColors(), settings.format, morph.offset);
+  both.written.front() += notWritten(morph.hasColors(), settings.output, morph.offset);
   return both;
 }
 

@@ -10,8 +10,6 @@
 #include "spherical_param/version.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,9 +38,7 @@ ToolText toolText() {
 struct Settings {
   std::string input;
   std::string output;
-  FileFormat output_format = nullptr;
-  std::string sphere;  ///< empty: not wanted
-  FileFormat sphere_format = nullptr;
+  std::string sphere;   ///< empty: not wanted
   std::string page;     ///< empty: not wanted
   std::string command;  ///< that does the same again
   OutputSettings report;
@@ -74,13 +70,7 @@ std::string numbered(const std::string& name, std::size_t part) {
   if (mark == std::string::npos) {
     return name;
   }
-  std::array<char, 32> number{};
-  std::snprintf(number.data(), number.size(), "%03zu", part);
-  return name.substr(0, mark) + number.data() + name.substr(mark + number_mark.size());
-}
-
-bool mayMakeParts(const Settings& settings) {
-  return withTopology(settings.reconstruction.options).parts == PartsMode::Each;
+  return name.substr(0, mark) + withZeros(part, 3) + name.substr(mark + number_mark.size());
 }
 
 /// The settings of a part, with the names of its files.
@@ -93,7 +83,8 @@ Settings settingsOf(Settings settings, std::size_t part) {
 
 /// \throw UsageError for names without the numbers that they need, or with some that they do not.
 void checkNumbers(const Settings& settings) {
-  if (isNumbered(settings.output) && !mayMakeParts(settings)) {
+  const bool has_parts = withTopology(settings.reconstruction.options).parts == PartsMode::Each;
+  if (isNumbered(settings.output) && !has_parts) {
     throw UsageError(inQuotes(settings.output) +
                          " is a pattern for several parts, but the output is one mesh",
                      "give -parts each, or a name without " + number_mark);
@@ -110,11 +101,10 @@ void parse(const CommandLine& command_line, Settings& settings) {
   const std::vector<std::string> files = filesOf(command_line, toolText());
   settings.input = files[0];
   settings.output = files[1];
-  command_line.apply(optionsOf(settings));
   requireFormat(settings.input, FileUse::ReadCloud);
-  settings.output_format = requireFormat(settings.output, FileUse::WriteMesh);
+  requireFormat(settings.output, FileUse::WriteMesh);
   if (!settings.sphere.empty()) {
-    settings.sphere_format = requireFormat(settings.sphere, FileUse::WriteMesh);
+    requireFormat(settings.sphere, FileUse::WriteMesh);
   }
   parseReconstructionOptions(command_line, settings.reconstruction);
   settings.page = parseHtmlReport(command_line);
@@ -181,7 +171,7 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
                         : numbered(name, 0) + (is_view && surfaces > 1 ? " (the largest)" : ""));
   }
-  files.front() += notWritten(!cloud.data->colors.empty(), settings.output_format, cloud.offset);
+  files.front() += notWritten(!cloud.data->colors.empty(), settings.output, cloud.offset);
   return files;
 }
 
@@ -230,9 +220,7 @@ void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction&
                    ToolRun& run) {
   mesh.shiftBy(cloud.offset);
   run.console.begin("write");
-  OutputFile& file = run.open(settings.output);
-  writeMesh(file, mesh, settings.output_format, settings.report.encoding(), run.console.updates());
-  file.finish();
+  run.write(settings.output, mesh, run.console.updates());
   cloud.stages.push_back(run.console.end());
 }
 
@@ -240,10 +228,7 @@ void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction&
 void writeViews(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
                 ToolRun& run) {
   if (!settings.sphere.empty()) {
-    OutputFile& file = run.open(settings.sphere);
-    writeMesh(file, sphereOf(cloud, surface, surface.sphere), settings.sphere_format,
-              settings.report.encoding());
-    file.finish();
+    run.write(settings.sphere, sphereOf(cloud, surface, surface.sphere));
   }
   if (!settings.page.empty()) {
     run.console.begin("report");
@@ -264,18 +249,15 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& r
     return;
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const Settings of_part = settingsOf(settings, i);
+    Settings of_part = settingsOf(settings, i);
     checkOutputs({settings.input}, outputsOf(of_part));
     writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, run);
     // Those without a number are of the largest.
-    Settings of_views = of_part;
-    if (i > 0 && !isNumbered(settings.sphere)) {
-      of_views.sphere.clear();
+    for (std::string* view : {&of_part.sphere, &of_part.page}) {
+      const bool is_numbered = isNumbered(view == &of_part.page ? settings.page : settings.sphere);
+      *view = i == 0 || is_numbered ? *view : "";
     }
-    if (i > 0 && !isNumbered(settings.page)) {
-      of_views.page.clear();
-    }
-    writeViews(of_views, cloud, surfaces[i], run);
+    writeViews(of_part, cloud, surfaces[i], run);
   }
 }
 
@@ -286,7 +268,7 @@ void run(const CommandLine& command_line, Settings& settings) {
               {{"input", settings.input}, {"output", settings.output}}, optionsOf(settings));
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, run.console, cloud);
-  cloud.offset = settings.report.offsetOf(settings.output_format, *cloud.data);
+  cloud.offset = settings.report.offsetOf(settings.output, *cloud.data);
   if (!settings.sphere.empty()) {
     requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
   }

@@ -61,30 +61,29 @@ ToolText toolText() {
 struct Settings {
   std::string input;
   std::string output;
-  bool reads_image = false;  ///< a geometry image becomes a mesh; else the input is a cloud
-  bool writes_image = false;
-  FileFormat output_format = nullptr;         ///< unless it is an image
   Sampling sampling = Sampling::Icosahedral;  ///< octahedral for an image
   std::optional<std::size_t> points;          ///< none: as many as the mesh has vertices
   std::optional<int> side;                    ///< none: as the points say
   SurfaceFit fit = SurfaceFit::Smooth;
-  std::string sphere;  ///< empty: not wanted
-  FileFormat sphere_format = nullptr;
+  std::string sphere;     ///< empty: not wanted
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
   ProductSettings product{HandlesOnSphere::Refused, mapOptionsForResampling()};
   OutputSettings report;
 
-  bool makesCloud() const { return !reads_image && sampling == Sampling::Even; }
+  /// Whether a geometry image becomes a mesh; else the input is a cloud.
+  bool readsImage() const { return isGeometryImageFile(input); }
+  bool writesImage() const { return isGeometryImageFile(output); }
+  bool makesCloud() const { return !readsImage() && sampling == Sampling::Even; }
   /// Whether vertices are slid along the surface, so that triangles do not intersect.
-  bool slides() const { return !reads_image && !series && sampling != Sampling::Even; }
+  bool slides() const { return !readsImage() && !series && sampling != Sampling::Even; }
   bool needsHarmonics() const { return series || !harmonics.empty(); }
   int threads() const { return product.map.threads; }
 };
 
 OptionTable ownOptions(Settings& settings) {
-  return {usedIf([&] { return !settings.reads_image && !settings.writes_image; },
+  return {usedIf([&] { return !settings.readsImage() && !settings.writesImage(); },
                  choiceOption("grid", "of the points: two of meshes; even: of a cloud",
                               settings.sampling, sampling_names)),
           numberOption(
@@ -94,7 +93,7 @@ OptionTable ownOptions(Settings& settings) {
           numberOption("side",
                        "pixels along the sides of a geometry image, odd; unset: as -points says",
                        settings.side, 3, longest_side),
-          usedIf([&] { return !settings.reads_image; },
+          usedIf([&] { return !settings.readsImage(); },
                  choiceOption("fit", "surface between the points of the cloud", settings.fit,
                               fit_names)),
           fileOption("sphere", "write the points on the sphere with the same triangles",
@@ -111,7 +110,7 @@ OptionTable optionsOf(Settings& settings) {
   ReconstructionSettings& reconstruction = settings.product.reconstruction;
   return joined(
       {ownOptions(settings),
-       !settings.reads_image
+       !settings.readsImage()
            ? productOptions(settings.product)
            : OptionTable{flagOption("strict", "", reconstruction.strict),
                          numberOption("threads", "", reconstruction.options.threads, 0, 1024)},
@@ -120,7 +119,7 @@ OptionTable optionsOf(Settings& settings) {
 
 /// Refuses options that would change nothing.
 void checkCombination(const CommandLine& command_line, Settings& settings) {
-  if (settings.reads_image) {
+  if (settings.readsImage()) {
     for (const OptionInfo& option :
          joined({ownOptions(settings), productOptions(settings.product)})) {
       if (option.name != "sphere" && option.name != "threads" && option.name != "strict") {
@@ -129,7 +128,7 @@ void checkCombination(const CommandLine& command_line, Settings& settings) {
     }
     return;
   }
-  if (settings.writes_image) {
+  if (settings.writesImage()) {
     command_line.refuse({"grid", "sphere", "series", "offset", "ascii"},
                         "a geometry image as output", "a mesh as output");
     if (settings.points) {
@@ -150,28 +149,23 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   const std::vector<std::string> files = filesOf(command_line, toolText());
   settings.input = files[0];
   settings.output = files[1];
-  settings.reads_image = isGeometryImageFile(settings.input);
-  settings.writes_image = isGeometryImageFile(settings.output);
-  if (!settings.reads_image) {
+  command_line.apply(ownOptions(settings));  // a cloud has fewer points
+  if (!settings.readsImage()) {
     requireFormat(settings.input, FileUse::ReadCloud, image_extensions);
-  } else if (settings.writes_image) {
+  } else if (settings.writesImage()) {
     throw UsageError("a geometry image can only be written as a mesh",
                      "give an output with one of " + extensionsFor(FileUse::WriteMesh));
   }
-  if (!settings.writes_image) {
-    settings.output_format = requireFormat(
-        settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh,
-        image_extensions);
+  if (!settings.writesImage()) {
+    requireFormat(settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh,
+                  image_extensions);
   }
   if (!settings.sphere.empty()) {
-    settings.sphere_format = requireFormat(settings.sphere, FileUse::WriteMesh);
+    requireFormat(settings.sphere, FileUse::WriteMesh);
   }
 }
 
 void parse(const CommandLine& command_line, Settings& settings) {
-  command_line.apply(ownOptions(settings));
-  command_line.apply(ownOptions(settings));  // a cloud has fewer points
-  command_line.apply(outputOptions(settings.report));
   parseFiles(command_line, settings);
   if (settings.side && *settings.side % 2 == 0) {
     throw UsageError("option -side: " + std::to_string(*settings.side) + " is even",
@@ -179,7 +173,7 @@ void parse(const CommandLine& command_line, Settings& settings) {
   }
   parseProductOptions(command_line, settings.product);
   checkCombination(command_line, settings);
-  if (settings.writes_image) {
+  if (settings.writesImage()) {
     settings.sampling = Sampling::Octahedral;
   }
 }
@@ -217,7 +211,7 @@ GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurf
   const SphereGrid kind =
       settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
   int frequency = gridFrequency(kind, points, surface);
-  if (settings.writes_image) {
+  if (settings.writesImage()) {
     frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
   }
   return makeGridSphere(kind, frequency);
@@ -259,7 +253,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
     const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
     output.self_intersections = pairs.size();
     output.intersecting_triangles = countTriangles(pairs);
-    if (!settings.reads_image && output.topology.closed) {
+    if (!settings.readsImage() && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
       output.distance = distanceFromMesh(mapped.mesh.points, mapped.map.sphere, surface);
@@ -275,7 +269,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   const SphereSurface surface = surfaceOf(mapped, settings.fit, settings.threads());
   output.stages = mapped.cloud.stages;
   output.stages.push_back(console.end());
-  if (settings.writes_image && surface.isOpen()) {
+  if (settings.writesImage() && surface.isOpen()) {
     throw Failure("cannot write " + inQuotes(settings.output) +
                       ": a geometry image has no openings, but the surface has some",
                   "give -surface closed, or the name of a mesh as output");
@@ -292,7 +286,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
     console.begin("untangle");
     output.untangling = untangle(surface, output.mesh, settings.threads());
     // Flips may remove what sliding leaves; the edges of an image are given.
-    if (output.untangling->after > 0 && !settings.writes_image) {
+    if (output.untangling->after > 0 && !settings.writesImage()) {
       output.flipped_edges = removeIntersections(output.mesh, settings.threads()).flips;
     }
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
@@ -302,7 +296,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
         truncated(colorsAt(mapped, surface.evaluate(output.mesh.directions).locations, 0.5));
   }
   output.mesh.points = asWritten(output.mesh.points);
-  if (settings.writes_image) {
+  if (settings.writesImage()) {
     output.image = geometryImageOfMesh(output.mesh);
   }
 }
@@ -323,7 +317,7 @@ std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& map
   std::vector<Finding> findings = findingsOf(mapped);
   if (output.self_intersections > 0) {
     findings.push_back({"the output has self-intersections" +
-                            std::string(settings.reads_image || settings.series
+                            std::string(settings.readsImage() || settings.series
                                             ? ""
                                             : ": try more -points, or a smaller -area-weight"),
                         "", "", true});
@@ -383,12 +377,12 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["output"] = settings.output;
   json["offset"] = output.offset;
   json["options"] = optionsToJson(optionsOf(settings));
-  if (!settings.reads_image) {
+  if (!settings.readsImage()) {
     addMapToJson(mapped, json);
   }
   const bool is_cloud = output.isCloud();
   const auto unless = [](bool idle, const Json& value) { return idle ? Json(nullptr) : value; };
-  json["grid"] = {{"kind", nameOf(settings.reads_image ? Sampling::Octahedral : settings.sampling,
+  json["grid"] = {{"kind", nameOf(settings.readsImage() ? Sampling::Octahedral : settings.sampling,
                                   sampling_names)},
                   {"frequency", unless(is_cloud, output.frequency)},
                   {"side", unless(output.image.side == 0, output.image.side)}};
@@ -424,14 +418,13 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
 
 Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Output& output) {
   Summary summary = summaryOf(settings.input, mapped.cloud);
-  if (settings.reads_image) {
+  if (settings.readsImage()) {
     summary.read = settings.input;
   }
   summary.verdict = verdictOf(output, mapped);
   summary.made = meshSize(output.pointCount(), output.mesh.triangles.cols());
   summary.written = outputsOf(settings);
-  summary.written.front() +=
-      notWritten(!output.colors.empty(), settings.output_format, output.offset);
+  summary.written.front() += notWritten(!output.colors.empty(), settings.output, output.offset);
   return summary;
 }
 
@@ -439,9 +432,8 @@ Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Out
 void store(const Settings& settings, const MappedCloud& mapped, Output& output, ToolRun& run) {
   Console& console = run.console;
   console.begin("write");
-  OutputFile& file = run.open(settings.output);
-  if (settings.writes_image) {
-    writeGeometryImage(file, output.image, console.updates());
+  if (settings.writesImage()) {
+    writeGeometryImage(run.open(settings.output), output.image, console.updates());
   } else {
     PointData vertices;
     vertices.points = toPoints(output.mesh.points);
@@ -449,17 +441,15 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
     vertices.colors = output.colors;
     vertices.has_alpha = mapped.cloud.data->has_alpha;
     MeshView mesh(vertices, output.mesh.triangles);
-    output.offset = settings.report.offsetOf(settings.output_format, vertices);
+    output.offset = settings.report.offsetOf(settings.output, vertices);
     mesh.shiftBy(output.offset);
-    writeMesh(file, mesh, settings.output_format, settings.report.encoding(),
-              console.updates(0.0, settings.sphere.empty() ? 1.0 : 0.5));
+    run.write(settings.output, mesh, console.updates(0.0, settings.sphere.empty() ? 1.0 : 0.5));
     if (!settings.sphere.empty()) {
       MeshView sphere = mesh;
       sphere.leaveOutNormals();
       sphere.shiftBy({});
       sphere.moveTo(output.mesh.directions);
-      writeMesh(run.open(settings.sphere), sphere, settings.sphere_format,
-                settings.report.encoding(), console.updates(0.5, 1.0));
+      run.write(settings.sphere, sphere, console.updates(0.5, 1.0));
     }
   }
   if (!settings.harmonics.empty()) {
@@ -476,7 +466,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   MappedCloud mapped;
   Output output;
   runLibrary("cannot remesh " + inQuotes(settings.input), kReportIt, [&] {
-    if (settings.reads_image) {
+    if (settings.readsImage()) {
       makeFromImage(settings, output, run.console);
     } else {
       makeFromCloud(settings, mapped, output, run.console);

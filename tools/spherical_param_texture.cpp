@@ -47,14 +47,15 @@ ToolText toolText() {
 struct Settings {
   std::string input;
   std::string output;
-  std::string extension;  ///< of the output
-  std::string material;   ///< empty: not wanted
-  std::string image;      ///< empty: it is in the output
+  std::string material;  ///< empty: not wanted
+  std::string image;     ///< empty: it is in the output
   TextureAtlasOptions atlas;
   BakeOptions bake;
   std::optional<int> cells;  ///< none: the colours of the points, if there are any
   ProductSettings product{HandlesOnSphere::Cut};
   OutputSettings report;
+
+  std::string extension() const { return extensionOf(output); }
 };
 
 OptionTable optionsOf(Settings& settings) {
@@ -83,7 +84,7 @@ std::string seenFrom(const std::string& place, const std::string& file) {
 /// Names that would be read as something else where they are mentioned.
 void checkName(const Settings& settings, const std::string& name) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  const bool is_obj = settings.extension == ".obj";
+  const bool is_obj = settings.extension() == ".obj";
   if (std::any_of(name.begin(), name.end(), [&](char c) {
         return is_control(static_cast<unsigned char>(c)) || (is_obj && c == ' ');
       })) {
@@ -98,14 +99,13 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   const std::vector<std::string> files = filesOf(command_line, toolText());
   settings.input = files[0];
   settings.output = files[1];
-  settings.extension = extensionOf(settings.output);
   requireFormat(settings.input, FileUse::ReadCloud);
-  if (settings.extension == ".glb") {
+  if (settings.extension() == ".glb") {
     command_line.refuse({"image"}, ".glb, which contains the image", "an output .obj or .ply");
     command_line.refuse({"ascii"}, ".glb", "an output .ply");
     return;
   }
-  if (settings.extension != ".obj" && settings.extension != ".ply") {
+  if (settings.extension() != ".obj" && settings.extension() != ".ply") {
     throw UsageError(inQuotes(settings.output) + " has an extension without textures",
                      "use one of .glb .obj .ply");
   }
@@ -119,7 +119,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
                      "give a name that does");
   }
   checkName(settings, seenFrom(settings.output, settings.image));
-  if (settings.extension == ".obj") {
+  if (settings.extension() == ".obj") {
     command_line.refuse({"ascii"}, ".obj", "an output .ply");
     settings.material = beside(".mtl");
     checkName(settings, seenFrom(settings.output, settings.material));
@@ -127,7 +127,6 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
 }
 
 void parse(const CommandLine& command_line, Settings& settings) {
-  command_line.apply(optionsOf(settings));
   parseFiles(command_line, settings);
   parseProductOptions(command_line, settings.product);
   // The faces of a cube keep room for the gutter, unless they were hardly to be seen then.
@@ -161,7 +160,7 @@ struct Output {
 
 void make(const Settings& settings, MappedCloud& mapped, Output& output, Console& console) {
   mapCloud(settings.input, settings.product, console, mapped);
-  mapped.cloud.offset = settings.report.offsetOf(formatOf(settings.output), *mapped.cloud.data);
+  mapped.cloud.offset = settings.report.offsetOf(settings.output, *mapped.cloud.data);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
   output.atlas = makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
@@ -226,7 +225,7 @@ Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Out
   summary.made = meshSize(output.atlas.vertices.size(), output.atlas.triangles.cols()) + ", " +
                  output.pixels();
   summary.written = outputsOf(settings);
-  summary.written.front() += notWritten(false, formatOf(settings.output), mapped.cloud.offset);
+  summary.written.front() += notWritten(false, settings.output, mapped.cloud.offset);
   return summary;
 }
 
@@ -254,8 +253,7 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
     const TriangleMesh mesh = repeatedOnCuts(output.atlas, vertices);
     MeshView view(mesh);
     view.cover(texture);
-    writeMesh(run.open(settings.output), view, formatOf(settings.output),
-              settings.report.encoding());
+    run.write(settings.output, view);
   }
   output.stages.push_back(run.console.end());
 }

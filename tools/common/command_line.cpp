@@ -75,11 +75,6 @@ OptionValue parseValue(const OptionRow& row, const std::string& flag, const std:
   return row.is_integer ? OptionValue(static_cast<std::int64_t>(*number)) : OptionValue(*number);
 }
 
-std::string replaced(std::string text, char from, char to) {
-  std::replace(text.begin(), text.end(), from, to);
-  return text;
-}
-
 }  // namespace
 
 OptionTable joined(const std::vector<OptionTable>& tables) {

@@ -70,7 +70,8 @@ Point offsetFor(const PointData& data, FileFormat format, Encoding encoding) {
   return check.needsDouble() ? check.roundMiddle() : Point{};
 }
 
-std::string notWritten(bool has_colors, FileFormat format, const Point& offset) {
+std::string notWritten(bool has_colors, const std::string& path, const Point& offset) {
+  const FileFormat format = formatOf(path);
   std::string text;
   if (has_colors && format != nullptr && !format->has_colors) {
     text = "without colours";

@@ -35,8 +35,8 @@ Point offsetFor(const PointData& data, FileFormat format, Encoding encoding);
 
 /// What is not in the file of a mesh: " (without colours, less 1000, 0, 0)"; empty if all is.
 ///
-/// \param has_colors of the mesh. \param format null: one that has no mesh.
-std::string notWritten(bool has_colors, FileFormat format, const Point& offset);
+/// \param has_colors of the mesh.
+std::string notWritten(bool has_colors, const std::string& path, const Point& offset);
 
 /// The coordinates of points as writeMesh() rounds them.
 Positions asWritten(const Positions& points);

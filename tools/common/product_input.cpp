@@ -58,7 +58,6 @@ OptionTable productOptions(ProductSettings& settings) {
 }
 
 void parseProductOptions(const CommandLine& command_line, ProductSettings& settings) {
-  command_line.apply(productOptions(settings));
   parseReconstructionOptions(command_line, settings.reconstruction);
   Options& options = settings.reconstruction.options;
   if (options.topology == TopologyMode::Scan && options.parts == PartsMode::AsTopology) {

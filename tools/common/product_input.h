@@ -31,7 +31,7 @@ struct ProductSettings {
 /// The options of the reconstruction, then those of the map.
 OptionTable productOptions(ProductSettings& settings);
 
-/// Sets those that were given. Refuses options that would change nothing as well. \throw UsageError
+/// Fits them to one surface, and refuses options that would change nothing. \throw UsageError
 void parseProductOptions(const CommandLine& command_line, ProductSettings& settings);
 
 /// A cloud, its mesh, and the map of that to the sphere.

@@ -1,11 +1,11 @@
 #include "common/reconstruction_options.h"
 
 #include "common/cloud_reader.h"
+#include "common/text.h"
 #include "parallel.h"
 #include "spherical_param/option_table.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -69,14 +69,11 @@ OptionTable reconstructionOptions(ReconstructionSettings& settings) {
 }
 
 void parseReconstructionOptions(const CommandLine& command_line, ReconstructionSettings& settings) {
-  const OptionTable table = reconstructionOptions(settings);
-  command_line.apply(table);
   const Options in_force = withTopology(settings.options);
-  const std::vector<OptionRow> rows = toolRows();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (const auto failed = failedCondition(rows[i], in_force)) {
+  for (const OptionRow& row : toolRows()) {
+    if (const auto failed = failedCondition(row, in_force)) {
       const auto& [other, needed] = *failed;
-      command_line.refuse({table[i].name},
+      command_line.refuse({replaced(row.name, '_', '-')},
                           "-" + other + " " +
                               spherical_param::textOf(findOption(other).get(in_force)),
                           "-" + other + " " + needed);

@@ -19,7 +19,8 @@ struct ReconstructionSettings {
 /// The options of the library's table, -columns and -strict.
 OptionTable reconstructionOptions(ReconstructionSettings& settings);
 
-/// Sets those that were given. Refuses options that would have no effect as well. \throw UsageError
+/// Refuses options that were given but would have no effect, and finds the number of threads.
+/// \throw UsageError
 void parseReconstructionOptions(const CommandLine& command_line, ReconstructionSettings& settings);
 
 /// The values of the options; null if unset or without effect.

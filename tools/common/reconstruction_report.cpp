@@ -121,12 +121,11 @@ std::string inWords(const Json& value) {
     }
     return text;
   }
-  std::string text = value.is_string()         ? value.get<std::string>()
-                     : value.is_boolean()      ? (value.get<bool>() ? "yes" : "no")
-                     : value.is_number_float() ? formatted(value.get<double>(), 6)
-                                               : value.dump();
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
+  return replaced(value.is_string()         ? value.get<std::string>()
+                  : value.is_boolean()      ? (value.get<bool>() ? "yes" : "no")
+                  : value.is_number_float() ? formatted(value.get<double>(), 6)
+                                            : value.dump(),
+                  '_', ' ');
 }
 
 /// Prints a list of structs as a table.

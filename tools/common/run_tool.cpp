@@ -152,6 +152,7 @@ int runTool(const ToolText& text, int argc, char** argv, const OptionTable& opti
       const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
       const CommandLine command_line(words, options);
       if (!answerHelpOrVersion(command_line, text, options)) {
+        command_line.apply(options);
         body(command_line);
       }
       return static_cast<int>(ExitCode::Done);
@@ -255,6 +256,12 @@ ToolRun::ToolRun(const OutputSettings& settings, bool strict, const std::string&
   print(options, console);
 }
 
+void ToolRun::write(const std::string& path, const MeshView& mesh, const FileProgress& progress) {
+  OutputFile& file = open(path);
+  writeMesh(file, mesh, formatOf(path), settings_.encoding(), progress);
+  file.finish();  // not all of them are open at a time
+}
+
 void ToolRun::publish(const std::function<Json()>& make_report, const Summary& summary) {
   for (OutputFile& file : files_) {
     file.finish();
@@ -299,9 +306,7 @@ void ToolRun::conclude(bool is_usable, const std::string& page_option) {
   for (const auto& [of, finding, is_failure] : entries_) {
     std::string line = (of.empty() ? "" : of + ": ") + finding.text;
     if (!finding.option.empty()) {
-      std::string flag = finding.option;
-      std::replace(flag.begin(), flag.end(), '_', '-');
-      line += ": try -" + flag + " " + finding.value;
+      line += ": try -" + replaced(finding.option, '_', '-') + " " + finding.value;
     } else if (finding.is_fault && !is_failure && !page_option.empty()) {
       line += ": try " + page_option + " to see where";
     }

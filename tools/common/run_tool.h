@@ -29,7 +29,8 @@ struct ToolText {
 /// Runs a tool, or prints its help or version: temporary files are removed on signals, and every
 /// exception becomes one line of cause and one of remedy on the standard error.
 ///
-/// \param body is given the command line, if no help was wanted. \return the exit code of main().
+/// \param body is given the command line, whose options are set, if no help was wanted.
+/// \return the exit code of main().
 int runTool(const ToolText& text, int argc, char** argv, const OptionTable& options,
             const std::function<void(const CommandLine&)>& body);
 
@@ -46,8 +47,8 @@ struct OutputSettings {
 
   Encoding encoding() const { return ascii ? Encoding::Ascii : Encoding::Binary; }
   /// What is subtracted from the coordinates of a file.
-  Point offsetOf(FileFormat format, const PointData& data) const {
-    return offset ? *offset : offsetFor(data, format, encoding());
+  Point offsetOf(const std::string& path, const PointData& data) const {
+    return offset ? *offset : offsetFor(data, formatOf(path), encoding());
   }
 };
 
@@ -75,6 +76,8 @@ public:
 
   /// A file that gets its name together with the others.
   OutputFile& open(const std::string& path) { return files_.emplace_back(path); }
+  /// Stores a mesh in such a file, in the format of its name.
+  void write(const std::string& path, const MeshView& mesh, const FileProgress& progress = {});
   /// Prints the summary and gives all files their names, once everything is stored.
   ///
   /// \param make_report called if a report is wanted. \throw Failure

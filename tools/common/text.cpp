@@ -28,6 +28,11 @@ std::string oneLine(std::string_view text) {
   return withoutControls(text, ' ');
 }
 
+std::string replaced(std::string text, char from, char to) {
+  std::replace(text.begin(), text.end(), from, to);
+  return text;
+}
+
 std::string lowerCase(std::string_view text) {
   std::string result(text);
   for (char& c : result) {
@@ -69,6 +74,11 @@ std::string grouped(std::size_t number) {
     text.insert(end - 3, ",");
   }
   return text;
+}
+
+std::string withZeros(std::size_t number, std::size_t digits) {
+  const std::string text = std::to_string(number);
+  return std::string(digits - std::min(digits, text.size()), '0') + text;
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {

@@ -14,6 +14,9 @@ std::string inQuotes(std::string_view text);
 /// The text with control characters as blanks.
 std::string oneLine(std::string_view text);
 
+/// The text with one character in place of another.
+std::string replaced(std::string text, char from, char to);
+
 /// The text in lower case (ASCII).
 std::string lowerCase(std::string_view text);
 
@@ -32,6 +35,9 @@ void split(std::string_view text, std::string_view separators,
 
 /// A number as people write it, e.g. "49,996".
 std::string grouped(std::size_t number);
+
+/// A number with zeros before it, that many digits at least.
+std::string withZeros(std::size_t number, std::size_t digits);
 
 /// A number with its noun, e.g. "1 point", "2,000 points".
 std::string counted(std::size_t count, const std::string& one, const std::string& many = "");
