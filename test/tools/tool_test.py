@@ -183,6 +183,9 @@ class ToolTest(unittest.TestCase):
         os.chmod(folder.name, 0o777)
         os.chdir(folder.name)
 
+    def same(self, values, others):
+        self.assertTrue(np.array_equal(values, others))
+
     def check_sphere(self, mesh):
         """A closed, oriented sphere over all of its vertices."""
         self.assertEqual(check_surface(mesh.triangles, len(mesh.points)), (2, 0))

@@ -29,7 +29,9 @@
 namespace spherical_param::tools {
 namespace {
 
+using tool_test::readFile;
 using tool_test::TemporaryDirectory;
+using tool_test::writeFile;
 using Cloud = pcl::PointCloud<pcl::PointXYZRGBNormal>;
 
 /// More than a block in any format.
@@ -166,7 +168,7 @@ TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
     const std::string path = directory.file("a.ply");
-    tool_test::writeFile(path, plyOf(cloud, format));
+    writeFile(path, plyOf(cloud, format));
     const PointData data = readCloud(path);
     expectSame(data, cloud, false);
     ASSERT_EQ(data.scalars.size(), 2U);
@@ -179,11 +181,10 @@ TEST_F(CloudReader, CoordinatesAreOfAnyNumericType) {
   const std::string bytes("\1\1\5\0\0\0\0\0\0\0\xff", 11);
   const std::string ply = directory.file("a.ply");
   const std::string pcd = directory.file("a.pcd");
-  tool_test::writeFile(ply,
-                       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty short "
-                       "x\nproperty uint64 y\nproperty char z\nend_header\n" +
-                           bytes);
-  tool_test::writeFile(pcd, "FIELDS x y z\nSIZE 2 8 1\nTYPE I U I\nWIDTH 1\nDATA binary\n" + bytes);
+  writeFile(ply, "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty short "
+                 "x\nproperty uint64 y\nproperty char z\nend_header\n" +
+                     bytes);
+  writeFile(pcd, "FIELDS x y z\nSIZE 2 8 1\nTYPE I U I\nWIDTH 1\nDATA binary\n" + bytes);
   for (const std::string& path : {ply, pcd})
     EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{257.0, 5.0, -1.0}}));
 }
@@ -193,13 +194,12 @@ TEST_F(CloudReader, PointsInNoFaceAreNotedUnlessTheFacesMakeNoSense) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
     const std::string file = plyOf(makeCloud(50005), format);  // the faces have 50,002 points
-    tool_test::writeFile(path, file);
+    writeFile(path, file);
     const PointData data = readCloud(path);
     EXPECT_EQ(data.unused, (std::vector<Index>{50002, 50003, 50004}));
-    tool_test::writeFile(path, file.substr(0, file.size() - 20));
+    writeFile(path, file.substr(0, file.size() - 20));
     EXPECT_TRUE(readCloud(path).unused.empty());
-    tool_test::writeFile(path,
-                         plyOf(makeCloud(1000), format));  // they have points that are not there
+    writeFile(path, plyOf(makeCloud(1000), format));  // they have points that are not there
     EXPECT_TRUE(readCloud(path).unused.empty());
   }
 }
@@ -208,11 +208,10 @@ TEST_F(CloudReader, FacesWithOtherPointsSayNothingOfThoseThatAreNotUsed) {
   const std::string path = directory.file("a.ply");
   for (const auto& [corner, unused] :
        std::map<std::string, std::vector<Index>>{{"2", {3, 4}}, {"7", {}}, {"-2", {}}, {"x", {}}}) {
-    tool_test::writeFile(
-        path, "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
-              "y\nproperty float z\nelement face 1\nproperty list uchar int "
-              "vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 1 " +
-                  corner + "\n");
+    writeFile(path, "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
+                    "y\nproperty float z\nelement face 1\nproperty list uchar int "
+                    "vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 1 " +
+                        corner + "\n");
     EXPECT_EQ(readCloud(path).unused, unused) << corner;
   }
 }
@@ -220,9 +219,8 @@ TEST_F(CloudReader, FacesWithOtherPointsSayNothingOfThoseThatAreNotUsed) {
 TEST_F(CloudReader, TheViewpointOfPcdIsTheOriginOnlyWithRowsOrIfItIsApart) {
   const auto viewpoint_of = [&](const std::string& header, double x) {
     const std::string path = directory.file("a.pcd");
-    tool_test::writeFile(path, "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + header +
-                                   "POINTS 2\nDATA ascii\n-1 -1 -1\n" + std::to_string(x) +
-                                   " 1 1\n");
+    writeFile(path, "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + header +
+                        "POINTS 2\nDATA ascii\n-1 -1 -1\n" + std::to_string(x) + " 1 1\n");
     return readCloud(path).viewpoint;
   };
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 1 2 -3 1 0 0 0\n", 1.0),
@@ -266,8 +264,8 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   const Cloud& cloud = largeCloud();
   ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
   ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("b.pcd"), cloud), 0);
-  const std::string pcd = tool_test::readFile(directory.file("a.pcd"));
-  const std::string packed = tool_test::readFile(directory.file("b.pcd"));
+  const std::string pcd = readFile(directory.file("a.pcd"));
+  const std::string packed = readFile(directory.file("b.pcd"));
   const std::string text = textOf(cloud, "");
   const std::string obj = textOf(cloud, "v ");
   const std::string in_line = "line " + std::to_string(point_count);
@@ -288,7 +286,7 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
            {"a.xyz", text, text.rfind(' '), in_line + " has 2 columns"},
            {"a.obj", obj, obj.rfind(' '), in_line + " has no three numbers"}}) {
     ASSERT_GT(content.size(), std::size_t{1} << 20U);
-    tool_test::writeFile(directory.file(name), content.substr(0, kept));
+    writeFile(directory.file(name), content.substr(0, kept));
     expectRefused(directory.file(name), cause);
   }
 }
@@ -298,7 +296,7 @@ TEST_F(CloudReader, ProgressGrowsToOne) {
   ASSERT_EQ(pcl::io::savePLYFileBinary(directory.file("a.ply"), cloud), 0);
   ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
   ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("packed.pcd"), cloud), 0);
-  tool_test::writeFile(directory.file("a.xyz"), textOf(cloud, ""));
+  writeFile(directory.file("a.xyz"), textOf(cloud, ""));
   for (const char* name : {"a.ply", "a.pcd", "packed.pcd", "a.xyz"}) {
     std::vector<double> shares;
     readCloud(directory.file(name), [&](double share) { shares.push_back(share); });
@@ -390,7 +388,7 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
   };
   for (const Case& test : cases) {
     SCOPED_TRACE(std::string(test.name) + ": " + test.cause);
-    tool_test::writeFile(directory.file(test.name), test.content);
+    writeFile(directory.file(test.name), test.content);
     expectRefused(directory.file(test.name), test.cause);
   }
 }
@@ -403,7 +401,7 @@ TEST_F(CloudReader, ColoursAreFoundByTheirNamesAndIgnoredIfIncomplete) {
       {"a.ply", plyOf("ascii", "1", "0 0 0 1\n", alpha), {}},
       {"a.pcd", pcdOf("x y z red", "4 4 4 1", "F F F U", "1", "ascii\n1 2 3 4\n"), {}}};
   for (const auto& [name, content, colors] : cases) {
-    tool_test::writeFile(directory.file(name), content);
+    writeFile(directory.file(name), content);
     const PointData data = readCloud(directory.file(name));
     EXPECT_EQ(data.points.size(), 1U);
     EXPECT_EQ(data.colors, colors);
@@ -413,7 +411,7 @@ TEST_F(CloudReader, ColoursAreFoundByTheirNamesAndIgnoredIfIncomplete) {
 TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
   const std::string path = directory.file("a.pcd");
   const std::string zeros("\x00\x00\xe0\x02\x00", 5);  // one byte, then 11 times the same
-  tool_test::writeFile(path, packedPcd("1", 12, zeros));
+  writeFile(path, packedPcd("1", 12, zeros));
   EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{0.0F, 0.0F, 0.0F}}));
   const std::vector<std::string> broken = {
       zeros.substr(0, 2),                             // too few
@@ -428,11 +426,11 @@ TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
       "",
   };
   for (const std::string& packed : broken) {
-    tool_test::writeFile(path, packedPcd("1", 12, packed));
+    writeFile(path, packedPcd("1", 12, packed));
     EXPECT_THROW(readCloud(path), Failure) << testing::PrintToString(packed);
   }
   // No memory is taken for what so few bytes cannot hold.
-  tool_test::writeFile(path, packedPcd("300000000", 3600000000U, zeros));
+  writeFile(path, packedPcd("300000000", 3600000000U, zeros));
   expectRefused(path, "too short for the points");
 }
 
@@ -449,12 +447,12 @@ TEST_F(CloudReader, PaddingTakesNoMemoryAndElementsWithoutPropertiesNoTime) {
   std::string file = pcdOf(padded("_ ", "x y z"), padded("8 ", "4 4 4"), padded("U ", "F F F"), "1",
                            "binary_compressed\n" + packed);
   file.insert(file.find("WIDTH"), "COUNT " + padded("1073741824 ", "1 1 1") + "\n");
-  tool_test::writeFile(directory.file("a.pcd"), file);
+  writeFile(directory.file("a.pcd"), file);
   EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0, 0.0, 0.0}}));
 
   file = plyOf("ascii", "1", "0 0 0\n");
   file.insert(file.find("element vertex"), "element nothing 1073741824\n");
-  tool_test::writeFile(directory.file("a.ply"), file);
+  writeFile(directory.file("a.ply"), file);
   EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);
 }
 
@@ -467,7 +465,7 @@ TEST_F(CloudReader, EveryFileOfTheFuzzersIsReadOrRefused) {
     ++count;
     SCOPED_TRACE(entry.path());
     const std::string path = directory.file("a." + kind);
-    tool_test::writeFile(path, tool_test::readFile(entry.path().string()));
+    writeFile(path, readFile(entry.path().string()));
     try {
       const PointData data = readCloud(path);
       EXPECT_FALSE(data.points.empty());

@@ -18,84 +18,71 @@ struct Case {
   const char* name;
   const char* extension;
   std::string text;
-  bool has_normals;
-  bool has_colors;
+  std::string further = "";  ///< n: it has normals, c: colours
 };
 
 /// Each holds the points (1, 2, 3) and (4.5, -5, 6), with normals x and z and colours red and blue.
 const std::vector<Case> cases = {
-    {"Plain", "xyz", "1 2 3\n4.5 -5 +6", false, false},
-    {"ColoursThenNormals", "xyz", "1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", true, true},
+    {"Plain", "xyz", "1 2 3\n4.5 -5 +6"},
+    {"ColoursThenNormals", "xyz", "1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", "nc"},
     {"HeadingCommentsBlankLines", "txt",
      "# a comment\nx;y;z;nx;ny;nz;r;g;b\n1;2;3;1;0;0;255;0;0; # end\r\n\n"
      "4.5;-5;6;0;0;1;0;0;255\r\n",
-     true, true},
-    {"NumberOfPointsFirst", "xyz", "2\n1 2 3\n4.5 -5 6\n", false, false},
-    {"DecimalCommasSemicolons", "txt", "1,0;2,0;3,0\n4,5;-5,0;6,0\n", false, false},
-    {"DecimalCommasTabs", "xyz", "1,0\t2,0\t3,0\t255\t0\t0\n4,5\t-5,0\t6,0\t0\t0\t255\n", false,
-     true},
-    {"DecimalCommasBlanks", "xyz", "1,0 2,0 3,0\n4,5 -5,0 6,0\n", false, false},
-    {"DecimalCommasInQuotes", "csv", "\"1,0\",\"2,0\",\"3,0\"\n\"4,5\",\"-5,0\",\"6,0\"\n", false,
-     false},
-    {"DecimalCommasUnderAHeading", "csv", "x,y,z\n1,0,2,0,3,0\n4,5,-5,0,6,0\n", false, false},
-    {"CommasAndBlanks", "csv", "1.0, 2.0, 3.0,\n4.5, -5.0, 6.0,\n", false, false},
-    {"IntensityThenColours", "pts", "2\n1 2 3 17 255 0 0\n4.5 -5 6 80 0 0 255\n", false, true},
-    {"ColoursThenIntensity", "xyzrgb", "1 2 3 255 0 0 0.5\n4.5 -5 6 0 0 255 -7\n", false, true},
-    {"ColoursToOneByExtension", "xyzrgb", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", false, true},
-    {"NormalsAlone", "xyzn", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", true, false},
+     "nc"},
+    {"NumberOfPointsFirst", "xyz", "2\n1 2 3\n4.5 -5 6\n"},
+    {"DecimalCommasSemicolons", "txt", "1,0;2,0;3,0\n4,5;-5,0;6,0\n"},
+    {"DecimalCommasTabs", "xyz", "1,0\t2,0\t3,0\t255\t0\t0\n4,5\t-5,0\t6,0\t0\t0\t255\n", "c"},
+    {"DecimalCommasBlanks", "xyz", "1,0 2,0 3,0\n4,5 -5,0 6,0\n"},
+    {"DecimalCommasInQuotes", "csv", "\"1,0\",\"2,0\",\"3,0\"\n\"4,5\",\"-5,0\",\"6,0\"\n"},
+    {"DecimalCommasUnderAHeading", "csv", "x,y,z\n1,0,2,0,3,0\n4,5,-5,0,6,0\n"},
+    {"CommasAndBlanks", "csv", "1.0, 2.0, 3.0,\n4.5, -5.0, 6.0,\n"},
+    {"IntensityThenColours", "pts", "2\n1 2 3 17 255 0 0\n4.5 -5 6 80 0 0 255\n", "c"},
+    {"ColoursThenIntensity", "xyzrgb", "1 2 3 255 0 0 0.5\n4.5 -5 6 0 0 255 -7\n", "c"},
+    {"ColoursToOneByExtension", "xyzrgb", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", "c"},
+    {"NormalsAlone", "xyzn", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", "n"},
     {"CloudCompare", "asc",
-     "//X Y Z R G B Nx Ny Nz\n2\n1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", true, true},
-    {"QuotedHeading", "csv", "\"Z\",\"X\",\"Y\"\n3,1,2\n6,4.5,-5\n", false, false},
-    {"HeadingWithUnits", "txt", "Id X [mm] Y [mm] Z [mm]\n7 1 2 3\n8 4.5 -5 6\n", false, false},
-    {"HeadingWithUnitsAndTabs", "txt", "X (m)\tY (m)\tZ (m)\n1\t2\t3\n4.5\t-5\t6\n", false, false},
+     "//X Y Z R G B Nx Ny Nz\n2\n1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", "nc"},
+    {"QuotedHeading", "csv", "\"Z\",\"X\",\"Y\"\n3,1,2\n6,4.5,-5\n"},
+    {"HeadingWithUnits", "txt", "Id X [mm] Y [mm] Z [mm]\n7 1 2 3\n8 4.5 -5 6\n"},
+    {"HeadingWithUnitsAndTabs", "txt", "X (m)\tY (m)\tZ (m)\n1\t2\t3\n4.5\t-5\t6\n"},
     {"ParaView", "csv",
-     "\"time\",\"Points_m_XYZ:0\",\"Points_m_XYZ:1\",\"Points_m_XYZ:2\"\n7,1,2,3\n8,4.5,-5,6\n",
-     false, false},
-    {"RowNumbersWords", "csv", ",x,y,z,class\n0,1,2,3,tree\n1,4.5,-5,6,\n", false, false},
-    {"RowNumbersSemicolonsDecimalCommas", "csv", ";x;y;z\n0;1,0;2,0;3,0\n1;4,5;-5,0;6,0\n", false,
-     false},
-    {"AllComments", "xyz", "% a\n; b\n// c\n# x y z\n1 2 3\n4.5 -5 6\n", false, false},
-    {"CommentsAtTheEnd", "xyz", "; a; b\n1 2 3 ; a, b\n4.5 -5 6 // c\n", false, false},
-    {"RowsThatSemicolonsEnd", "txt", "1 2 3;\n4.5 -5 6;\n", false, false},
-    {"SeparatorOfExcel", "csv", "sep=;\n1,0;2,0;3,0\n4,5;-5;6\n", false, false},
-    {"ObjNamedText", "txt", "v 1 2 3\nv 4.5 -5 6\n", false, false},
+     "\"time\",\"Points_m_XYZ:0\",\"Points_m_XYZ:1\",\"Points_m_XYZ:2\"\n7,1,2,3\n8,4.5,-5,6\n"},
+    {"RowNumbersWords", "csv", ",x,y,z,class\n0,1,2,3,tree\n1,4.5,-5,6,\n"},
+    {"RowNumbersSemicolonsDecimalCommas", "csv", ";x;y;z\n0;1,0;2,0;3,0\n1;4,5;-5,0;6,0\n"},
+    {"AllComments", "xyz", "% a\n; b\n// c\n# x y z\n1 2 3\n4.5 -5 6\n"},
+    {"CommentsAtTheEnd", "xyz", "; a; b\n1 2 3 ; a, b\n4.5 -5 6 // c\n"},
+    {"RowsThatSemicolonsEnd", "txt", "1 2 3;\n4.5 -5 6;\n"},
+    {"SeparatorOfExcel", "csv", "sep=;\n1,0;2,0;3,0\n4,5;-5;6\n"},
+    {"ObjNamedText", "txt", "v 1 2 3\nv 4.5 -5 6\n"},
     {"PcdWithByteOrderMark", "pcd",
      "\xef\xbb\xbf"
-     "FIELDS x y z\nWIDTH 2\nDATA ASCII\n1 2 3\n4.5 -5 6\n",
-     false, false},
+     "FIELDS x y z\nWIDTH 2\nDATA ASCII\n1 2 3\n4.5 -5 6\n"},
     {"ByteOrderMark", "xyz",
      "\xef\xbb\xbf"
-     "1 2 3\n4.5 -5 6\n",
-     false, false},
-    {"ExponentsOfFortran", "xyz", "1.0D+00 2d0 0.3D1\n4.5 -5 6\n", false, false},
-    {"TextOfUnknownExtension", "dat", "1 2 3\n4.5 -5 6\n", false, false},
-    {"ObjOfUnknownExtension", "dat", "# a\nv 1 2 3\nv 4.5 -5 6\n", false, false},
-    {"ObjWithByteOrderMark", "obj", "\xef\xbb\xbfv 1 2 3\nv 4.5 -5 6\n", false, false},
+     "1 2 3\n4.5 -5 6\n"},
+    {"ExponentsOfFortran", "xyz", "1.0D+00 2d0 0.3D1\n4.5 -5 6\n"},
+    {"TextOfUnknownExtension", "dat", "1 2 3\n4.5 -5 6\n"},
+    {"ObjOfUnknownExtension", "dat", "# a\nv 1 2 3\nv 4.5 -5 6\n"},
+    {"ObjWithByteOrderMark", "obj", "\xef\xbb\xbfv 1 2 3\nv 4.5 -5 6\n"},
     {"PlyWithListsWordsAndLongIntegers", "ply",
      "ply\nformat ascii 1.0\nelement vertex 2\nproperty list uchar int views\nproperty float X\n"
      "property string name\nproperty int64 time\nproperty float Y\nproperty float "
-     "Z\nend_header\n2 5 6 1 a 7 2 3\n0 4.5 b 8 -5 6\n",
-     false, false},
+     "Z\nend_header\n2 5 6 1 a 7 2 3\n0 4.5 b 8 -5 6\n"},
     {"PlyOfUnknownExtension", "dat",
      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
-     "z\nend_header\n1 2 3\n4.5 -5 6\n",
-     false, false},
+     "z\nend_header\n1 2 3\n4.5 -5 6\n"},
     {"PcdWithoutHeightAndPoints", "pcd",
-     "FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\n4.5 -5 6\n", false, false},
-    {"PcdWithCommas", "pcd", "FIELDS x, y, z\nWIDTH 2\nDATA ascii\n1,2,3\n4.5, -5, 6\n", false,
-     false},
-    {"PcdWithDecimalCommas", "pcd", "FIELDS x y z\nWIDTH 2\nDATA ascii\n1,0 2,0 3,0\n4,5 -5,0 6\n",
-     false, false},
-    {"ColumnsOfSomethingElse", "xyz", "1 2 3 0.5 7 8\n4.5 -5 6 1 2 3\n", false, false},
+     "FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\n4.5 -5 6\n"},
+    {"PcdWithCommas", "pcd", "FIELDS x, y, z\nWIDTH 2\nDATA ascii\n1,2,3\n4.5, -5, 6\n"},
+    {"PcdWithDecimalCommas", "pcd", "FIELDS x y z\nWIDTH 2\nDATA ascii\n1,0 2,0 3,0\n4,5 -5,0 6\n"},
+    {"ColumnsOfSomethingElse", "xyz", "1 2 3 0.5 7 8\n4.5 -5 6 1 2 3\n"},
     {"ObjWithNormalsByFaces", "obj",
      "# test\no object\nv 1 2 3 1 0 0\nv 4.5 -5 6 0 0 1\nvn 0 0 1\nvn 1 0 0\n"
      "f 1//2 2/7/1 -1//-2\n",
-     true, true},
-    {"ObjWithNormalsInOrder", "obj", "v 1 2 3\nvn 1 0 0\nv 4.5 -5 6\nvn 0 0 1\n", true, false},
-    {"ObjWithAVertexWithoutNormal", "obj", "v 1 2 3\nv 4.5 -5 6\nvn 1 0 0\nf 1//1 2 1//1\n", false,
-     false},
-    {"ObjWithColoursToTwoHundredAndFiftyFive", "obj", "v 1 2 3 255 0 0\nv 4.5 -5 6 0 0 255\n",
-     false, true},
+     "nc"},
+    {"ObjWithNormalsInOrder", "obj", "v 1 2 3\nvn 1 0 0\nv 4.5 -5 6\nvn 0 0 1\n", "n"},
+    {"ObjWithAVertexWithoutNormal", "obj", "v 1 2 3\nv 4.5 -5 6\nvn 1 0 0\nf 1//1 2 1//1\n"},
+    {"ObjWithColoursToTwoHundredAndFiftyFive", "obj", "v 1 2 3 255 0 0\nv 4.5 -5 6 0 0 255\n", "c"},
 };
 
 TEST(TextClouds, PointsNormalsAndColoursAreFoundInEveryNotation) {
@@ -107,9 +94,10 @@ TEST(TextClouds, PointsNormalsAndColoursAreFoundInEveryNotation) {
     const PointData data = readCloud(path);
     EXPECT_EQ(data.points, (std::vector<Point>{{1.0, 2.0, 3.0}, {4.5, -5.0, 6.0}}));
     const std::vector<Normal> normals = {{1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
-    EXPECT_EQ(data.normals, test.has_normals ? normals : std::vector<Normal>());
+    EXPECT_EQ(data.normals, test.further[0] == 'n' ? normals : std::vector<Normal>());
     const std::vector<Color> colors = {{255, 0, 0, 255}, {0, 0, 255, 255}};
-    EXPECT_EQ(data.colors, test.has_colors ? colors : std::vector<Color>());
+    EXPECT_EQ(data.colors,
+              test.further.find('c') != std::string::npos ? colors : std::vector<Color>());
   }
 }
 
