@@ -13,10 +13,10 @@ namespace {
 
 CloudInfo infoOf(const PointData& data) {
   CloudInfo info;
-  info.normals.resize(3, static_cast<Eigen::Index>(data.normals.size()));
-  for (Eigen::Index i = 0; i < info.normals.cols(); ++i) {
-    info.normals.col(i) =
-        Eigen::Map<const Eigen::Vector3f>(data.normals[static_cast<std::size_t>(i)].data())
+  if (!data.normals.empty()) {
+    info.normals =
+        Eigen::Map<const Eigen::Matrix3Xf>(data.normals.front().data(), 3,
+                                           static_cast<Eigen::Index>(data.normals.size()))
             .cast<double>();
   }
   if (data.viewpoint) {

@@ -1,7 +1,6 @@
 #include "common/command_line.h"
 
 #include "common/errors.h"
-#include "common/numbers.h"
 #include "common/text.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/block_reader.h"
+#include "common/input_file.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/result.h"
 

@@ -1,9 +1,6 @@
 #include "common/json_report.h"
 
-#include "common/peak_memory.h"
-
-#include <cstdint>
-#include <optional>
+#include <fstream>
 
 namespace spherical_param::tools {
 
@@ -17,6 +14,17 @@ Json toJson(const std::vector<StageTime>& stages) {
     json.push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }
   return json;
+}
+
+std::optional<std::uint64_t> peakMemory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) {
+      return kibibytes * 1024;
+    }
+  }
+  return std::nullopt;
 }
 
 Json peakMemoryToJson() {

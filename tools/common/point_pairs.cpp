@@ -2,7 +2,6 @@
 
 #include "common/errors.h"
 #include "common/input_file.h"
-#include "common/numbers.h"
 #include "common/text.h"
 #include "formats/text_lines.h"
 

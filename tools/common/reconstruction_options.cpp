@@ -16,27 +16,24 @@ namespace {
 /// The condition of an option that does not hold, if any: the other option and the value it needs.
 std::optional<std::pair<std::string, std::string>> failedCondition(const OptionRow& row,
                                                                    const Options& options) {
-  const auto failed =
-      std::find_if(row.used_with.begin(), row.used_with.end(), [&](const auto& condition) {
-        const auto& [other, values] = condition;
-        return std::find(values.begin(), values.end(),
-                         spherical_param::textOf(findOption(other).get(options))) == values.end();
-      });
-  if (failed == row.used_with.end()) {
-    return std::nullopt;
+  for (const auto& [other, values] : row.used_with) {
+    const std::string value = spherical_param::textOf(findOption(other).get(options));
+    if (std::find(values.begin(), values.end(), value) == values.end()) {
+      return std::pair(other, values.front());
+    }
   }
-  return std::pair(failed->first, failed->second.front());
+  return std::nullopt;
 }
 
 /// The rows of the table that tools have. Only the page of -report shows a history, and sets how
 /// much of it is kept.
 std::vector<OptionRow> toolRows() {
-  std::vector<OptionRow> rows = optionTable();
-  rows.erase(std::remove_if(rows.begin(), rows.end(),
-                            [](const OptionRow& row) {
-                              return row.field.rfind("embedding.history_", 0) == 0;
-                            }),
-             rows.end());
+  std::vector<OptionRow> rows;
+  for (const OptionRow& row : optionTable()) {
+    if (row.field.rfind("embedding.history_", 0) != 0) {
+      rows.push_back(row);
+    }
+  }
   return rows;
 }
 

@@ -1,8 +1,6 @@
 #include "common/record_reader.h"
 
 #include "common/input_file.h"
-#include "common/lzf.h"
-#include "common/numbers.h"
 #include "common/point_table.h"
 #include "common/text.h"
 
@@ -11,6 +9,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -31,6 +30,57 @@ double bitsOf(double value, char type) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &number, sizeof bits);
   return bits;
+}
+
+/// Unpacks the next bytes of a file, as LibLZF (M. Lehmann) packs them.
+///
+/// \param packed_size bytes of the file. \param size what they should make.
+/// \return none if they are broken, or make another number of bytes.
+std::optional<std::string> unpackLzf(BlockReader& reader, std::uint64_t packed_size,
+                                     std::size_t size) {
+  std::string bytes;
+  bytes.reserve(size);
+  const auto take = [&](std::size_t count) {
+    const char* const taken = count <= packed_size ? reader.take(count) : nullptr;
+    packed_size -= taken != nullptr ? count : 0;
+    return taken;
+  };
+  while (packed_size > 0) {
+    const char* next = take(1);
+    if (next == nullptr) {
+      return std::nullopt;
+    }
+    const auto control = static_cast<std::uint8_t>(*next);
+    constexpr std::uint8_t first_reference = 32;
+    if (control < first_reference) {
+      const std::size_t count = std::size_t{control} + 1;
+      next = take(count);
+      if (next == nullptr || count > size - bytes.size()) {
+        return std::nullopt;
+      }
+      bytes.append(next, count);
+      continue;
+    }
+    // Three bits of length, five and eight of distance; the longest length has another byte.
+    std::size_t length = (std::size_t{control} >> 5U) + 2;
+    constexpr std::size_t longest = 9;
+    const std::size_t more = length == longest ? 2 : 1;
+    next = take(more);
+    if (next == nullptr) {
+      return std::nullopt;
+    }
+    length += more == 2 ? static_cast<std::uint8_t>(next[0]) : 0U;
+    const std::size_t distance =
+        ((std::size_t{control} & 0x1fU) << 8U) + static_cast<std::uint8_t>(next[more - 1]) + 1;
+    if (distance > bytes.size() || length > size - bytes.size()) {
+      return std::nullopt;
+    }
+    // It may reach into what it makes.
+    for (std::size_t i = 0; i < length; ++i) {
+      bytes += bytes[bytes.size() - distance];
+    }
+  }
+  return bytes.size() == size ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
 class RecordReader {
@@ -193,26 +243,20 @@ private:
   }
 
   double valueOf(const RecordField& field, const char* bytes) const {
-    switch (field.type == 'F' ? 'F' : field.type + static_cast<char>(field.size)) {
-    case 'F':
+    if (field.type == 'F') {
       return field.size == 8 ? load<double>(bytes) : load<float>(bytes);
-    case 'I' + 1:
-      return load<std::int8_t>(bytes);
-    case 'I' + 2:
-      return load<std::int16_t>(bytes);
-    case 'I' + 4:
-      return load<std::int32_t>(bytes);
-    case 'I' + 8:
-      return static_cast<double>(load<std::int64_t>(bytes));
-    case 'U' + 1:
-      return load<std::uint8_t>(bytes);
-    case 'U' + 2:
-      return load<std::uint16_t>(bytes);
-    case 'U' + 4:
-      return load<std::uint32_t>(bytes);
-    default:
-      return static_cast<double>(load<std::uint64_t>(bytes));
     }
+    const bool is_signed = field.type == 'I';
+    return field.size == 1   ? integer<std::int8_t>(bytes, is_signed)
+           : field.size == 2 ? integer<std::int16_t>(bytes, is_signed)
+           : field.size == 4 ? integer<std::int32_t>(bytes, is_signed)
+                             : integer<std::int64_t>(bytes, is_signed);
+  }
+
+  template <typename Signed>
+  double integer(const char* bytes, bool is_signed) const {
+    return is_signed ? static_cast<double>(load<Signed>(bytes))
+                     : static_cast<double>(load<std::make_unsigned_t<Signed>>(bytes));
   }
 
   template <typename Number>

@@ -1,12 +1,42 @@
 #pragma once
 
-#include "common/block_reader.h"
+#include "common/input_file.h"
 #include "common/point_data.h"
-#include "common/record_layout.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace spherical_param::tools {
+
+/// Packed: little endian as well, but all values of one field after those of another, by LZF.
+enum class RecordStorage { Text, LittleEndian, BigEndian, Packed };
+
+/// One property of a record.
+struct RecordField {
+  std::string name;
+  char type = 'F';              ///< F real, I signed, U unsigned, T any word of a text
+  std::size_t size = 4;         ///< bytes of a value
+  std::size_t count = 1;        ///< values
+  std::size_t length_size = 0;  ///< bytes of the length of a list, which is skipped; 0: no list
+};
+
+/// Records of one kind: points, faces or others.
+struct RecordElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<RecordField> fields;  ///< at least one
+};
+
+/// What a file has, as its header says.
+struct RecordLayout {
+  RecordStorage storage = RecordStorage::Text;
+  std::uint64_t body = 0;               ///< bytes before the first record
+  std::size_t body_line = 0;            ///< lines before the first record
+  std::uint64_t packed_size = 0;        ///< bytes of the file, if they are packed
+  std::vector<RecordElement> elements;  ///< in their order; one is "vertex", and perhaps one "face"
+};
 
 /// Reads the points of a PLY or PCD file, with no more memory than they, a block of the file and
 /// the words of its longest line take, and all fields where they are packed. PCL's readers have the

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/block_reader.h"
+#include "common/input_file.h"
 #include "common/mesh_view.h"
 #include "common/output_file.h"
 #include "common/point_data.h"

@@ -1,7 +1,6 @@
 #include "common/run_tool.h"
 
 #include "common/errors.h"
-#include "common/numbers.h"
 #include "common/text.h"
 #include "spherical_param/version.h"
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +34,17 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 /// Splits like split(), into a vector whose memory is used again.
 void split(std::string_view text, std::string_view separators,
            std::vector<std::string_view>& parts);
+
+/// The number that a text consists of, whatever the locale. A number too large for a double is
+/// infinite; none if anything but the number is in the text.
+std::optional<double> toReal(std::string_view text);
+
+/// The same of a number that another program wrote: also 0,5, 1.2D+00, nan(ind), 1.#QNAN and NULL,
+/// which is not finite.
+std::optional<double> toValue(std::string_view text);
+
+/// The integer of a text; none if it is not an integer or does not fit.
+std::optional<std::int64_t> toInteger(std::string_view text);
 
 /// A number as people write it, e.g. "49,996".
 std::string grouped(std::size_t number);

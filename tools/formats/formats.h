@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/block_reader.h"
+#include "common/input_file.h"
 #include "common/mesh_view.h"
 #include "common/point_data.h"
 #include "common/record_writer.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/input_file.h"
-#include "common/numbers.h"
 #include "common/text.h"
 
 #include <algorithm>

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "common/block_reader.h"
 #include "common/input_file.h"
-#include "common/numbers.h"
 #include "common/text.h"
 
 #include <array>

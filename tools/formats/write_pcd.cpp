@@ -20,17 +20,10 @@ void writePcdHeader(RecordWriter& writer, const MeshView& mesh) {
     types += mesh.hasAlpha() ? " U" : " F";
     counts += " 1";
   }
-  writer.line("# .PCD v0.7 - Point Cloud Data file format");
-  writer.line("VERSION 0.7");
-  writer.line("FIELDS " + fields);
-  writer.line("SIZE" + sizes);
-  writer.line("TYPE " + types);
-  writer.line("COUNT" + counts);
-  writer.line("WIDTH " + std::to_string(mesh.vertexCount()));
-  writer.line("HEIGHT 1");
-  writer.line("VIEWPOINT 0 0 0 1 0 0 0");
-  writer.line("POINTS " + std::to_string(mesh.vertexCount()));
-  writer.line("DATA binary");
+  const std::string points = std::to_string(mesh.vertexCount());
+  writer.line("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields +
+              "\nSIZE" + sizes + "\nTYPE " + types + "\nCOUNT" + counts + "\nWIDTH " + points +
+              "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA binary");
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include "common/cloud_reader.h"
 #include "common/file_formats.h"
+#include "common/json_report.h"
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
-#include "common/peak_memory.h"
 
 #include <nlohmann/json.hpp>
 
