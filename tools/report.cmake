@@ -24,9 +24,10 @@ function(spherical_param_script_hash script result)
 endfunction()
 
 set(report_folder ${CMAKE_CURRENT_LIST_DIR}/report)
-set(report_inputs page.html style.css loader.js text.js first_view.js views.js main.js)
-list(TRANSFORM report_inputs PREPEND ${report_folder}/)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_inputs})
+set(report_scripts text.js first_view.js views.js main.js)
+list(TRANSFORM report_scripts PREPEND ${report_folder}/)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_scripts}
+  ${report_folder}/page.html ${report_folder}/style.css ${report_folder}/loader.js)
 
 set(report_page "")
 set(report_program "")
@@ -37,9 +38,7 @@ elseif(NOT EXISTS "${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitContro
   message(STATUS "The tools are built without -report: three.js (libjs-three) was not found")
 else()
   foreach(script ${SPHERICAL_PARAM_THREE_DIR}/three.min.js
-                 ${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js
-                 ${report_folder}/text.js ${report_folder}/first_view.js
-                 ${report_folder}/views.js ${report_folder}/main.js)
+                 ${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js ${report_scripts})
     file(READ ${script} text)
     string(APPEND report_program "${text}\n")
   endforeach()

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Reports of the tool in Chromium: test_report_page.py SOUND OPEN CAMERA HANDLES FOLDER
 
-SOUND is the report of a sound mesh whose input has a name that tries to be HTML, OPEN that of a
-cloud with an opening and outliers, CAMERA that of the open mesh of what a depth camera saw of a
-ball, HANDLES that of a double torus. FOLDER gets the pictures.
+SOUND is the report of a sound mesh whose input has a name that tries to be HTML, OPEN that of a cloud with an opening
+and outliers, CAMERA that of the open mesh of what a depth camera saw of a ball, HANDLES that of a double torus. FOLDER
+gets the pictures.
 """
+
 import json
 import pathlib
 import sys
@@ -37,9 +38,9 @@ PICTURES = """
                       colors: new Set(pixels).size, covered }];
     }));"""
 
-# The view of the mesh after a change of its points and of where the input's origin is, and the
-# area of its triangles that faces the camera there less that of which the back does. The change is
-# a rotation by rows; `flip` turns the triangles inside out.
+# The view of the mesh after a change of its points and of where the input's origin is, and the area of its triangles
+# that faces the camera there less that of which the back does. The change is a rotation by rows; `flip` turns the
+# triangles inside out.
 FIRST_VIEW = """
     const [rows, flip, closed] = arguments;
     const turn = new THREE.Matrix3().set(...rows);
@@ -47,8 +48,8 @@ FIRST_VIEW = """
     const at = (i) => new THREE.Vector3().fromArray(positions, 3 * i).applyMatrix3(turn);
     const points = Float32Array.from(positions, (x, i) => at(Math.floor(i / 3)).toArray()[i % 3]);
     const corners = flip ? triangles.slice().reverse() : triangles;
-    const view = firstView(points, corners, new Uint8Array(triangles.length / 3),
-                           origin.clone().applyMatrix3(turn), closed);
+    const eye = origin.clone().applyMatrix3(turn);
+    const view = firstView(points, corners, new Uint8Array(triangles.length / 3), eye, closed);
     let facing = 0;
     for (let t = 0; t < corners.length; t += 3) {
       const [a, b, c] = [0, 1, 2].map((k) => at(corners[t + k]));
@@ -64,14 +65,12 @@ class Browser(webdriver.Chrome):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         settings = webdriver.ChromeOptions()
         settings.binary_location = "/usr/bin/chromium"
-        for option in ("--headless", "--no-sandbox", "--disable-dev-shm-usage", "--disable-quic",
-                       "--no-first-run", "--disable-background-networking",
-                       "--disable-component-update", "--disable-sync", "--window-size=1300,1300",
-                       f"--user-data-dir={self.profile.name}", *options):
+        for option in ("--headless", "--no-sandbox", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
+                       "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                       "--window-size=1300,1300", f"--user-data-dir={self.profile.name}", *options):
             settings.add_argument(option)
         settings.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        service = webdriver.chrome.service.Service("/usr/bin/chromedriver")
-        super().__init__(service=service, options=settings)
+        super().__init__(service=webdriver.chrome.service.Service("/usr/bin/chromedriver"), options=settings)
 
     def open(self, page):
         """Opens a page. Returns the state that it comes to."""
@@ -99,20 +98,31 @@ class ReportPage(unittest.TestCase):
     def text(self, name):
         return self.element(name).text
 
+    def elements(self, selector):
+        return self.browser.find_elements(By.CSS_SELECTOR, selector)
+
     def run_script(self, script, *arguments):
         return self.browser.execute_script(script, *arguments)
 
-    def pictures(self):
-        return self.run_script(PICTURES, VIEWS)
+    def pictures(self, views=VIEWS):
+        return self.run_script(PICTURES, views)
+
+    def check_pictures(self, pictures):
+        for view, picture in pictures.items():
+            self.assertGreater(picture["colors"], 100, view)
+            self.assertTrue(0.05 < picture["covered"] < 0.95, (view, picture))
+
+    def check_findings(self, *findings):
+        for finding in findings:
+            self.assertIn(f"✓ {finding}", self.text("findings"))
 
     def changed(self, before):
         now = self.pictures()
         return tuple(view for view in VIEWS if now[view]["hash"] != before[view]["hash"])
 
     def move_slider(self, value):
-        self.run_script("const frame = document.getElementById('frame');"
-                        "frame.value = arguments[0]; frame.dispatchEvent(new Event('input'));",
-                        value)
+        self.run_script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'));",
+                        self.element("frame"), value)  # fmt: skip
 
     def save(self, name):
         self.browser.save_screenshot(str(FOLDER / f"{name}.png"))
@@ -123,12 +133,12 @@ class ReportPage(unittest.TestCase):
         pages = (SOUND, OPEN, CAMERA, HANDLES)
         for page in pages:
             self.open(page)
-            self.assertEqual([entry for entry in self.browser.get_log("browser")
-                              if entry["source"] != "rendering"], [])  # remarks on its speed
+            said = [entry for entry in self.browser.get_log("browser") if entry["source"] != "rendering"]  # speed
+            self.assertEqual(said, [])
         messages = [json.loads(entry["message"])["message"] for entry in self.browser.get_log("performance")]
         urls = {message["params"]["request"]["url"] for message in messages
                 if message["method"] == "Network.requestWillBeSent"
-                and not message["params"]["documentURL"].startswith("chrome")}
+                and not message["params"]["documentURL"].startswith("chrome")}  # fmt: skip
         self.assertEqual({url for url in urls if not url.startswith(("data:", "blob:"))},
                          {page.as_uri() for page in pages})
 
@@ -136,7 +146,7 @@ class ReportPage(unittest.TestCase):
         self.open(SOUND)
         self.assertIn("<img src=x onerror=", self.text("title"))
         self.assertIn("<img src=x onerror=", self.text("command"))
-        self.assertEqual(self.browser.find_elements(By.TAG_NAME, "img"), [])
+        self.assertEqual(self.elements("img"), [])
         # An injected script would not run.
         self.run_script("const script = document.createElement('script');"
                         "script.textContent = 'window.ran = true'; document.body.append(script);")
@@ -146,11 +156,10 @@ class ReportPage(unittest.TestCase):
     def test_says_the_verdict_its_reasons_and_the_numbers_of_the_report(self):
         self.open(SOUND)
         self.assertEqual(self.text("verdict-words"), "A sound mesh.")
-        for finding in ("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections"):
-            self.assertIn(f"✓ {finding}", self.text("findings"))
+        self.check_findings("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections")
         for part in ("stages", "numbers", "options", "levels"):
             self.assertGreater(len(self.text(part).splitlines()), 2, part)
-        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#residual svg")), 1)
+        self.assertEqual(len(self.elements("#residual svg")), 1)
         report = json.loads(self.run_script(
             "const json = document.getElementById('json'); json.open = true;"
             "json.dispatchEvent(new Event('toggle')); return json.lastChild.textContent;"))
@@ -158,8 +167,7 @@ class ReportPage(unittest.TestCase):
         for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
             self.assertIn(row, self.text("numbers"))
         self.open(OPEN)
-        self.assertEqual(self.text("verdict-words"),
-                         "A sound mesh, but it fills 1 opening; 2 stray points left out.")
+        self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening; 2 stray points left out.")
         self.assertIn("opening", self.text("warnings"))
         self.assertIn("stray point", self.text("cloud-note"))
 
@@ -167,10 +175,7 @@ class ReportPage(unittest.TestCase):
         for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera")):
             self.open(page)
             pictures = self.pictures()
-            for view, picture in pictures.items():
-                self.assertGreater(picture["colors"], 100, view)
-                self.assertGreater(picture["covered"], 0.05, view)
-                self.assertLess(picture["covered"], 0.95, view)
+            self.check_pictures(pictures)
             # Points are as large as their spacing: they just cover the object.
             self.assertAlmostEqual(pictures["cloud"]["covered"] / pictures["mesh"]["covered"], 1, delta=0.2)
             self.save(name)
@@ -212,9 +217,8 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(up, [0, 1, 0])
         self.assert_near(toward, (0, 0, 1))
         for flip in (False, True):
-            for rows in ([1, 0, 0, 0, 1, 0, 0, 0, 1],
-                         [0, 0, 1, 1, 0, 0, 0, 1, 0], [0, 0, -1, 1, 0, 0, 0, -1, 0],
-                         [1, 0, 0, 0, 0, -1, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, -1, 0]):
+            for rows in ([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 1, 1, 0, 0, 0, 1, 0], [0, 0, -1, 1, 0, 0, 0, -1, 0],
+                         [1, 0, 0, 0, 0, -1, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, -1, 0]):  # fmt: skip
                 _, _, facing = self.run_script(FIRST_VIEW, rows, flip, False)
                 self.assertGreater(facing, 0, (rows, flip))
 
@@ -223,8 +227,8 @@ class ReportPage(unittest.TestCase):
             self.open(page)
             self.assertEqual(self.element("color").get_property("value"), mode)
         first_mode = "return firstMode(findFlags(new Uint8Array([arguments[0]]), [0, 1, 2]))"
-        for marks, mode in ((0, "place"), (1, "suspicious"), (2, "suspicious"), (4, "suspicious"),
-                            (8, "suspicious"), (16, "place"), (17, "suspicious")):
+        for marks in (0, 1, 2, 4, 8, 16, 17):
+            mode = "place" if marks in (0, 16) else "suspicious"
             self.assertEqual(self.run_script(first_mode, marks), mode, marks)
 
     def test_turning_or_zooming_one_view_does_so_in_all(self):
@@ -232,12 +236,11 @@ class ReportPage(unittest.TestCase):
         start = self.pictures()
         for view in VIEWS:
             before = self.pictures()
-            ActionChains(self.browser).drag_and_drop_by_offset(
-                self.element(f"view-{view}"), 40, 25).perform()
+            ActionChains(self.browser).drag_and_drop_by_offset(self.element(f"view-{view}"), 40, 25).perform()
             self.assertEqual(self.changed(before), VIEWS, f"dragged {view}")
             before = self.pictures()
-            self.run_script("document.getElementById(arguments[0]).dispatchEvent("
-                            "new WheelEvent('wheel', {deltaY: -200}))", f"view-{view}")
+            self.run_script("arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -200}))",
+                            self.element(f"view-{view}"))  # fmt: skip
             self.assertEqual(self.changed(before), VIEWS, f"zoomed {view}")
         self.element("reset").click()
         self.assertEqual(self.changed(start), ())
@@ -261,8 +264,7 @@ class ReportPage(unittest.TestCase):
         for option in [option.get_attribute("value") for option in select.options]:
             select.select_by_value(option)
             hashes.add(self.pictures()["mesh"]["hash"])
-            self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, ".ramp")),
-                             int(option in ("area", "angle", "residual")), option)
+            self.assertEqual(len(self.elements(".ramp")), int(option in ("area", "angle", "residual")), option)
             self.save(f"color_{option}")
         # Without suspicious triangles that colouring is one colour, of another grey.
         self.assertEqual(len(hashes), len(select.options))
@@ -275,20 +277,17 @@ class ReportPage(unittest.TestCase):
     def test_a_mesh_with_handles_has_their_loops_and_no_sphere(self):
         self.open(HANDLES)
         self.assertEqual(self.text("verdict-words"), "A sound mesh with 2 handles.")
-        for finding in ("Closed", "Genus 2", "One component", "No self-intersections"):
-            self.assertIn(f"✓ {finding}", self.text("findings"))
+        self.check_findings("Closed", "Genus 2", "One component", "No self-intersections")
         self.assertIn("Handles 2", self.text("numbers"))
         for name in ("view-sphere", "unfolding", "residual-card"):
             self.assertFalse(self.element(name).is_displayed(), name)
         values = [option.get_attribute("value") for option in Select(self.element("color")).options]
         self.assertEqual(values, ["suspicious", "plain"])
         self.assertEqual(self.element("color").get_property("value"), "plain")
-        before = self.run_script(PICTURES, VIEWS[:2])
-        for view, picture in before.items():
-            self.assertGreater(picture["colors"], 100, view)
-            self.assertGreater(picture["covered"], 0.05, view)
+        before = self.pictures(VIEWS[:2])
+        self.check_pictures(before)
         self.save("handles")
-        button = self.browser.find_element(By.CSS_SELECTOR, "#flags .handles")
+        [button] = self.elements("#flags .handles")
         self.assertEqual(button.text, "Handle: 2 loops")
         targets = []
         for _ in range(2):
@@ -298,23 +297,21 @@ class ReportPage(unittest.TestCase):
         self.assertNotEqual(*targets)
         self.save("handle")
         self.element("reset").click()
-        self.assertEqual(self.run_script(PICTURES, VIEWS[:2]), before)
+        self.assertEqual(self.pictures(VIEWS[:2]), before)
 
     def test_suspicious_triangles_are_counted_and_looked_at(self):
         self.open(SOUND)
         self.assertEqual(self.text("flags"), "No suspicious triangles.")
         self.open(OPEN)
         before = self.pictures()
-        button = self.browser.find_element(By.CSS_SELECTOR, "#flags [data-bit='2']")
+        [button] = self.elements("#flags [data-bit='2']")
         self.assertRegex(button.text, r"Filled hole: [1-9]\d* triangles in 1 place")
         button.click()
-        self.assertEqual(Select(self.element("color")).first_selected_option.text,
-                         "suspicious triangles")
+        self.assertEqual(Select(self.element("color")).first_selected_option.text, "suspicious triangles")
         self.assertEqual(self.changed(before), VIEWS)
         # The marked vertex is at the hole, which is the top of the bowl, in the middle of the view.
-        self.assertEqual(*self.run_script(
-            "return [report_views.target.toArray(),"
-            "report_views.vector(report_views.marked).toArray()]"))
+        self.assertEqual(*self.run_script("const {target, marked} = report_views;"
+                                          "return [target.toArray(), report_views.vector(marked).toArray()]"))
         self.save("suspicious")
 
     def test_the_unfolding_changes_the_sphere_and_ends_at_the_result(self):

@@ -133,16 +133,13 @@ private:
   template <typename Integer>
   void addSteps(const std::string& name, const Eigen::MatrixXd& rows, const Eigen::VectorXd& min,
                 const Eigen::VectorXd& max) {
-    std::vector<Integer> steps;
-    steps.reserve(static_cast<std::size_t>(rows.size()));
-    for (Eigen::Index i = 0; i < rows.cols(); ++i) {
-      for (Eigen::Index c = 0; c < rows.rows(); ++c) {
-        const double size = max[c] - min[c];
-        const double fraction =
-            size > 0.0 ? (std::clamp(rows(c, i), min[c], max[c]) - min[c]) / size : 0.0;
-        steps.push_back(
-            static_cast<Integer>(std::lround(fraction * std::numeric_limits<Integer>::max())));
-      }
+    std::vector<Integer> steps(static_cast<std::size_t>(rows.size()));
+    for (Eigen::Index i = 0; i < rows.size(); ++i) {
+      const Eigen::Index c = i % rows.rows();
+      const double size = std::max(max[c] - min[c], std::numeric_limits<double>::min());
+      const double fraction = (std::clamp(rows.data()[i], min[c], max[c]) - min[c]) / size;
+      steps[static_cast<std::size_t>(i)] =
+          static_cast<Integer>(std::lround(fraction * std::numeric_limits<Integer>::max()));
     }
     add(name, static_cast<std::size_t>(rows.rows()), steps);
     about_[name]["min"] = std::vector<double>(min.begin(), min.end());
@@ -192,49 +189,42 @@ Json addHandles(const CloudReconstruction& cloud, const Surface& surface, const 
   return handles;
 }
 
-/// The rotation that turns the sphere so that its points are about where those of the object are,
-/// by rows; null without a sphere.
+/// The rigid motion that brings the points of the sphere about to where those of the object are, by
+/// rows; null without a sphere.
 Json sphereTurn(const ReportMesh& mesh) {
   if (mesh.sphere.cols() == 0) {
     return nullptr;
   }
-  const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < 9; ++i) {
-    rows.push_back(turn(i / 3, i % 3));
-  }
-  return rows;
+  const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false).transpose();
+  return std::vector<double>(turn.data(), turn.data() + turn.size());
 }
 
 /// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
 void addCloud(const CloudReconstruction& cloud, const Surface& surface, const ReportMesh& mesh,
               Arrays& arrays) {
-  const auto input = [&](Index vertex) {
-    return static_cast<std::size_t>(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
-  };
+  std::vector<Index> inputs;  // of the vertices
+  for (const Index vertex : mesh.vertices) {
+    inputs.push_back(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
+  }
   if (!cloud.data->colors.empty()) {
     std::vector<std::uint8_t> colors;
-    for (const Index vertex : mesh.vertices) {
-      const Color& color = cloud.data->colors[input(vertex)];
+    for (const Index input : inputs) {
+      const Color& color = cloud.data->colors[static_cast<std::size_t>(input)];
       colors.insert(colors.end(), color.begin(), color.begin() + 3);
     }
     arrays.add("colors", 3, colors);
   }
   if (surface.moved().cols() != 0) {
-    Positions points = mesh.positions;
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = cloud.data->position(input(mesh.vertices[i]));
-    }
+    const Positions points = positionsOf(*cloud.data)(Eigen::all, inputs);
     arrays.addPoints("cloud", points, boxOf(points));
   }
   const std::vector<Index>& left_out = cloud.result.left_out.outliers;
   if (!left_out.empty()) {
-    const std::size_t count = std::min(left_out.size(), max_outliers);
-    Positions outliers(3, static_cast<Eigen::Index>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      outliers.col(static_cast<Eigen::Index>(i)) =
-          cloud.data->position(static_cast<std::size_t>(left_out[i * left_out.size() / count]));
+    std::vector<Index> shown(std::min(left_out.size(), max_outliers));
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      shown[i] = left_out[i * left_out.size() / shown.size()];
     }
+    const Positions outliers = positionsOf(*cloud.data)(Eigen::all, shown);
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::AlignedBox3d box = boxOf(mesh.positions);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);

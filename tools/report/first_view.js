@@ -14,10 +14,8 @@ function sampledTriangles(points, triangles, marks) {
   return samples;
 }
 
-/**
- * Whether triangles are those of a depth image taken from `eye` along z: all are in front of it, and
- * their fronts face it. Closed surfaces show it as much of their backs.
- */
+/** Whether triangles are those of a depth image taken from `eye` along z: all are in front of it, and their fronts face
+    it. Closed surfaces show it as much of their backs. */
 function isDepthImage(samples, eye) {
   let front = 0;
   let all = 0;
@@ -32,18 +30,15 @@ function isDepthImage(samples, eye) {
   return front > 0.8 * all;
 }
 
-/**
- * How well points whose box has a diagonal of 2 stand upright about an axis: by their height, which
- * counts up to three times as much if their middle is above what they stand on, the wider the more.
- */
+/** How well points whose box has a diagonal of 2 stand upright about an axis: by their height, which counts up to three
+    times as much if their middle is above what they stand on, the wider the more. */
 function standing(points, axis) {
   const box = new THREE.Box3().setFromArray(points);
   const low = box.min.getComponent(axis);
   const foot = new THREE.Box3();
   const middle = new THREE.Vector3();
-  const point = new THREE.Vector3();
   for (let i = 0; i < points.length; i += 3) {
-    point.fromArray(points, i);
+    const point = new THREE.Vector3().fromArray(points, i);
     middle.add(point);
     if (point.getComponent(axis) <= low + 0.04) foot.expandByPoint(point);
   }
@@ -58,12 +53,11 @@ function standing(points, axis) {
 /**
  * The view in which a mesh shows most: {up, toward}, unit vectors, the second to the camera.
  *
- * Depth cameras look along z with y down, or along -z with y up: what they saw is looked at from
- * where they were. Else up is z or y, about whichever the object stands better. There it is looked
- * at from a little above, and by custom from -y if z is up, from z if y is: it is turned only as
- * far as other sides show clearly more area of the front of its triangles. Of closed surfaces that
- * is the projected area, of open ones that of the side towards which their normals point, if need
- * be from below.
+ * Depth cameras look along z with y down, or along -z with y up: what they saw is looked at from where they were. Else
+ * up is z or y, about whichever the object stands better. There it is looked at from a little above, and by custom from
+ * -y if z is up, from z if y is: it is turned only as far as other sides show clearly more area of the front of its
+ * triangles. Of closed surfaces that is the projected area, of open ones that of the side towards which their normals
+ * point, if need be from below.
  */
 function firstView(points, triangles, marks, eye, closed) {
   const samples = sampledTriangles(points, triangles, marks);
@@ -76,8 +70,7 @@ function firstView(points, triangles, marks, eye, closed) {
   const ahead = z_up ? new THREE.Vector3(0, -1, 0) : new THREE.Vector3(0, 0, 1);
   const radians = Math.PI / 180;
   const from = (elevation, azimuth) => ahead.clone().applyAxisAngle(up, azimuth * radians)
-    .multiplyScalar(Math.cos(elevation * radians))
-    .addScaledVector(up, Math.sin(elevation * radians));
+    .multiplyScalar(Math.cos(elevation * radians)).addScaledVector(up, Math.sin(elevation * radians));
   const custom = from(15, 0);
   const views = [];
   for (const elevation of closed ? [15, 30, 45, 60] : [-15, 15, 30, 45, 60]) {
@@ -88,7 +81,6 @@ function firstView(points, triangles, marks, eye, closed) {
     }
   }
   const most = Math.max(...views.map(({ area }) => area));
-  const { toward } = views.filter(({ area }) => area >= 0.9 * most)
-    .reduce((best, view) => (view.off < best.off ? view : best));
-  return { up, toward };
+  const good = views.filter(({ area }) => area >= 0.9 * most);
+  return { up, toward: good.reduce((best, view) => (view.off < best.off ? view : best)).toward };
 }

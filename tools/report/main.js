@@ -53,22 +53,16 @@ function placeColors(rows, box) {
 
 /** The ways to colour by, by key: {name, colors(), about, ends, text(share)}. Some need a sphere. */
 function makeModes(arrays, views) {
-  const scalar = (array, colors, more) => ({
-    colors: () => {
-      const out = new Uint8Array(3 * array.values.length);
-      array.values.forEach((q, v) => {
-        for (let c = 0; c < 3; ++c) out[3 * v + c] = colors[3 * q + c];
-      });
-      return out;
-    },
+  const scalar = (array, ramp, more) => ({
+    colors: () => Uint8Array.from({ length: 3 * array.values.length },
+      (_, i) => ramp[3 * array.values[Math.floor(i / 3)] + (i % 3)]),
     at: (share) => array.low[0] + share * (array.high[0] - array.low[0]),
-    array, ramp: colors, ...more,
+    array, ramp, ...more,
   });
   const uniform = (level) => () => new Uint8Array(views.positions.length).fill(level);
   const of_sphere = arrays.sphere && {
     place: {
-      name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]),
-      cells: true,
+      name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]), cells: true,
       about: 'The same colour and the same cell of 15° mean the same place on the sphere.',
     },
     area: scalar(arrays.area, diverging, {
@@ -93,8 +87,7 @@ function makeModes(arrays, views) {
       about: 'Triangles to look at, each kind in its colour. The buttons below lead to them.',
     },
     ...(arrays.colors && { input: {
-      name: 'colours of the cloud', colors: () => arrays.colors.values,
-      about: 'The colours of the input.',
+      name: 'colours of the cloud', colors: () => arrays.colors.values, about: 'The colours of the input.',
     } }),
     plain: { name: 'one colour', colors: uniform(185), about: '' },
   };
@@ -102,14 +95,12 @@ function makeModes(arrays, views) {
 
 function showLegend(mode) {
   const shares = [0, 0.25, 0.5, 0.75, 1];
+  const color = (share) => `rgb(${[0, 1, 2].map((c) => mode.ramp[3 * Math.round(255 * share) + c]).join(' ')})`;
   byId('legend').replaceChildren(make('div', {}, mode.about), mode.ramp ? make('div', {},
-    make('div', { class: 'ramp', style: { background: `linear-gradient(to right, ${
-      shares.flatMap((share) => [share, share + 0.125]).slice(0, 9).map((share) => {
-        const q = 3 * Math.round(255 * share);
-        return `rgb(${mode.ramp.subarray(q, q + 3).join(' ')})`;
-      }).join(', ')})` } }),
-    make('div', { class: 'ticks' },
-      shares.map((share) => make('span', {}, mode.text(mode.at(share)))))) : '');
+    make('div', { class: 'ramp', style: {
+      background: `linear-gradient(to right, ${Array.from({ length: 9 }, (_, i) => color(i / 8)).join(', ')})`,
+    } }),
+    make('div', { class: 'ticks' }, shares.map((share) => make('span', {}, mode.text(mode.at(share)))))) : '');
 }
 
 /** Triangles of each kind in connected places, the largest first. */
@@ -135,8 +126,7 @@ function findFlags(marks, triangles) {
       if (!places.has(place)) places.set(place, []);
       places.get(place).push(t);
     }
-    return { ...kind, triangles: flagged,
-      places: [...places.values()].sort((a, b) => b.length - a.length) };
+    return { ...kind, triangles: flagged, places: [...places.values()].sort((a, b) => b.length - a.length) };
   }).filter((kind) => kind.triangles.length > 0);
 }
 
@@ -146,18 +136,17 @@ const firstMode = (kinds) => (kinds.every((kind) => kind.harmless) ? 'place' : '
 /** A button that leads to one place after the other. */
 function tour(attributes, color, text, places, lookAt) {
   let next = 0;
-  return make('button', { type: 'button', ...attributes, onclick: () => {
-    lookAt(places[next % places.length]);
-    ++next;
-  } }, make('span', { class: 'swatch', style: { background: color } }), text);
+  const onclick = () => lookAt(places[next++ % places.length]);
+  return make('button', { type: 'button', ...attributes, onclick },
+    make('span', { class: 'swatch', style: { background: color } }), text);
 }
 
 /** Buttons that lead to suspicious triangles and to the handles, those of the mesh and the cut. */
 function showPlaces(kinds, views, select) {
   byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
     ...kinds.map((kind) => tour({ 'data-bit': kind.bit }, kind.color,
-      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ` +
-        counted(kind.places.length, 'place'), kind.places, ([triangle]) => {
+      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ${counted(kind.places.length, 'place')}`,
+      kind.places, ([triangle]) => {
         select('suspicious');
         // A triangle may be of several kinds.
         views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
@@ -167,8 +156,8 @@ function showPlaces(kinds, views, select) {
     [false, 'Handle', handle_color], [true, 'Possible handle, cut', cut_handle_color]]) {
     const loops = views.handles.filter((handle) => handle.is_cut === is_cut);
     if (loops.length === 0) continue;
-    byId('flags').append(tour({ class: 'handles' }, color,
-      `${name}: ${counted(loops.length, 'loop')}`, loops, (loop) => views.lookAtHandle(loop)));
+    byId('flags').append(tour({ class: 'handles' }, color, `${name}: ${counted(loops.length, 'loop')}`, loops,
+      (loop) => views.lookAtHandle(loop)));
   }
 }
 
@@ -176,10 +165,8 @@ function describe(vertex, modes, views, arrays) {
   if (vertex === null) return 'No vertex is marked.';
   const place = arrays.positions.numbers().subarray(3 * vertex, 3 * vertex + 3);
   return [`Vertex at (${Array.from(place, (x) => number(x)).join(', ')})`,
-    ...['area', 'angle', 'residual'].filter((key) => key in modes).map((key) => {
-      const mode = modes[key];
-      return `${mode.name} ${mode.text(mode.at(mode.array.values[vertex] / 255))}`;
-    })].join(' · ');
+    ...Object.values(modes).filter((mode) => mode.ramp).map(({ name, text, at, array }) =>
+      `${name} ${text(at(array.values[vertex] / 255))}`)].join(' · ');
 }
 
 /** The slider over the frames, the last place of which is the result. */
@@ -189,15 +176,14 @@ function makePlayer(views, frames, changed) {
   let playing = false;
   slider.max = count;
   const show = (at) => {
-    const is_result = at >= count;
-    const frame = frames[Math.min(Math.floor(at), count - 1)];
-    slider.value = Math.floor(at);
-    views.setFrame(is_result ? null : Math.min(at, count - 1));
-    byId('caption').textContent = is_result ? 'Result'
-      : `Frame ${Math.floor(at) + 1} of ${count} · level ${frame.level} · ` +
-        `${number(frame.nodes)} nodes · ${frame.step} ${frame.iteration}` +
-        (frame.residual === null ? '' : ` · residual ${number(frame.residual, 3)}`);
-    changed(is_result ? null : Math.floor(at));
+    const index = at >= count ? null : Math.floor(at);
+    slider.value = index ?? count;
+    views.setFrame(index === null ? null : Math.min(at, count - 1));
+    const { level, nodes, step, iteration, residual } = frames[index ?? 0];
+    byId('caption').textContent = index === null ? 'Result'
+      : `Frame ${index + 1} of ${count} · level ${level} · ${number(nodes)} nodes · ${step} ${iteration}` +
+        (residual === null ? '' : ` · residual ${number(residual, 3)}`);
+    changed(index);
   };
   const play = (on) => {
     playing = on;
@@ -233,14 +219,13 @@ function showViews(data, arrays, context) {
   const modes = makeModes(arrays, views);
   const kinds = findFlags(arrays.suspicious.values, views.triangles);
   const select = byId('color');
-  select.replaceChildren(...Object.entries(modes).map(([key, mode]) =>
-    make('option', { value: key }, mode.name)));
+  select.replaceChildren(...Object.entries(modes).map(([value, { name }]) => make('option', { value }, name)));
   const first = firstMode(kinds);
   select.value = first in modes ? first : 'plain';
   const unfolding = {
     colors: () => placeColors(views.positions, views.box),
-    about: 'During the unfolding colours mean the position on the object. Parts of the sphere ' +
-      'that are inside out are dark.',
+    about: 'During the unfolding colours mean the position on the object. Parts of the sphere that are inside out ' +
+      'are dark.',
   };
   const paint = () => {
     const mode = views.frame_at === null ? modes[select.value] : unfolding;
@@ -250,16 +235,14 @@ function showViews(data, arrays, context) {
     showLegend(mode);
   };
   select.addEventListener('change', paint);
-  byId('wireframe').addEventListener('change', (event) =>
-    views.setWireframe(event.target.checked));
+  byId('wireframe').addEventListener('change', (event) => views.setWireframe(event.target.checked));
   byId('reset').addEventListener('click', () => views.reset());
   views.onMark = (vertex) => {
     byId('readout').textContent = describe(vertex, modes, views, arrays);
   };
   views.onMark(null);
   if (data.outliers > 0) {
-    byId('cloud-note').replaceChildren(
-      make('span', { class: 'swatch', style: { background: outlier_color } }),
+    byId('cloud-note').replaceChildren(make('span', { class: 'swatch', style: { background: outlier_color } }),
       `${counted(data.outliers, 'stray point')} left out`);
   }
 
@@ -267,8 +250,8 @@ function showViews(data, arrays, context) {
   if (views.unfolding) {
     views.history_color.array.set(placeColors(views.history_places, views.box));
     let shown;
-    const moveCursor = showCurve('residual', data.frames.map((frame) => frame.residual),
-      'frame of the unfolding', (frame) => seek(frame));
+    const moveCursor = showCurve(data.frames.map((frame) => frame.residual), 'frame of the unfolding',
+      (frame) => seek(frame));
     seek = makePlayer(views, data.frames, (frame) => {
       moveCursor(frame);
       const was_result = shown === null;
@@ -290,27 +273,21 @@ async function main() {
   showTables(data);
   showStages(data.report.stages ?? []);
   const residuals = data.report.embedding?.residuals ?? [];
-  if (residuals.length > 1) {
-    showCurve('residual', residuals, 'iteration', () => {});
-  }
+  showCurve(residuals, 'iteration', () => {});
   byId('content').hidden = false;
 
-  const note = (text) => {
-    byId('note').hidden = false;
-    byId('note').textContent = text;
-  };
+  const note = (text) => Object.assign(byId('note'), { hidden: false, textContent: text });
   if (data.mesh.shown_triangles < data.mesh.triangles) {
-    note(`The views show a reduced copy: ${counted(data.mesh.shown_vertices, 'vertex', 'vertices')} ` +
-      'of the mesh, triangulated anew on the sphere. The numbers are those of the whole mesh.');
+    note(`The views show a reduced copy: ${counted(data.mesh.shown_vertices, 'vertex', 'vertices')} of the mesh, ` +
+      'triangulated anew on the sphere. The numbers are those of the whole mesh.');
   }
-  const canvas = byId('canvas');
-  const context = canvas.getContext('webgl2', { antialias: true });
-  if (!context) {
-    byId('show').hidden = true;
-    note('The views need WebGL 2, which this browser does not offer here: try another one, or ' +
-      'switch on hardware acceleration in its settings.');
-  } else {
+  const context = byId('canvas').getContext('webgl2', { antialias: true });
+  byId('show').hidden = !context;
+  if (context) {
     showViews(data, await readArrays(data.arrays), context);
+  } else {
+    note('The views need WebGL 2, which this browser does not offer here: try another one, or switch on hardware ' +
+      'acceleration in its settings.');
   }
   byId('residual-card').hidden = byId('residual').childElementCount === 0;
   byId('loading').hidden = true;

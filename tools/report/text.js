@@ -1,26 +1,19 @@
-// What the page says in words, tables and charts. Text from the data only ever becomes text: file
-// names are not to be trusted.
+// What the page says in words, tables and charts. Text from the data only ever becomes text: file names are not to be
+// trusted.
 'use strict';
 
 const byId = (id) => document.getElementById(id);
 
-function fill(node, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name === 'style') Object.assign(node.style, value);
-    else if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
-    else if (value !== false) node.setAttribute(name, value === true ? '' : String(value));
-  }
-  node.append(...children.flat().filter((child) => child !== null));
+function fill(node, { style, onclick, ...attributes } = {}, ...children) {
+  Object.assign(node.style, style);
+  if (onclick) node.addEventListener('click', onclick);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children.flat());
   return node;
 }
 
-function make(tag, attributes = {}, ...children) {
-  return fill(document.createElement(tag), attributes, children);
-}
-
-function svg(tag, attributes = {}, ...children) {
-  return fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
-}
+const make = (tag, ...content) => fill(document.createElement(tag), ...content);
+const svg = (tag, ...content) => fill(document.createElementNS('http://www.w3.org/2000/svg', tag), ...content);
 
 /** A number as people write it: 1,234 or 0.0123 or 1.2e-7. */
 function number(value, digits = 4) {
@@ -28,8 +21,7 @@ function number(value, digits = 4) {
   if (Number.isInteger(value) && Math.abs(value) < 1e15) return value.toLocaleString('en');
   const size = Math.abs(value);
   return size !== 0 && (size < 1e-3 || size >= 1e6)
-    ? value.toExponential(Math.min(digits - 1, 2)).replace('e+', 'e')
-    : String(Number(value.toPrecision(digits)));
+    ? value.toExponential(Math.min(digits - 1, 2)).replace('e+', 'e') : String(Number(value.toPrecision(digits)));
 }
 
 const counted = (count, one, many = `${one}s`) => `${number(count)} ${count === 1 ? one : many}`;
@@ -42,21 +34,20 @@ function inWords(value) {
   return typeof value === 'object' ? JSON.stringify(value) : String(value);
 }
 
-function showVerdict(data) {
-  const report = data.report;
+function showVerdict({ report, tool, mesh }) {
   const title = String(report.input ?? 'Report').split(/[/\\]/).pop();
   document.title = `Report on ${title}`;
   byId('title').textContent = title;
-  byId('tool').textContent = `${data.tool.name} ${data.tool.version} ·`;
-  byId('size').textContent = `${counted(data.mesh.vertices, 'vertex', 'vertices')}, ` +
-    counted(data.mesh.triangles, 'triangle');
+  byId('tool').textContent = `${tool.name} ${tool.version} ·`;
+  const triangles = counted(mesh.triangles, 'triangle');
+  byId('size').textContent = `${counted(mesh.vertices, 'vertex', 'vertices')}, ${triangles}`;
 
   const crossing = report.intersecting_triangles;
   const checks = [
     [report.manifold, 'Manifold', 'Not manifold'],
     [report.oriented, 'Oriented', 'Not oriented'],
     [crossing === 0, 'No self-intersections',
-      `${report.intersections_are_sampled ? 'At least ' : ''}${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
+      `${report.intersections_are_sampled ? 'At least ' : ''}${number(crossing)} of ${triangles} intersect`],
   ];
   const handles = (report.handles ?? []).filter((handle) => !handle.is_cut).length;
   if (report.closed || handles > 0) {
@@ -69,32 +60,20 @@ function showVerdict(data) {
     : findings.some((finding) => finding.is_fault) ? 'fair' : 'good';
   byId('verdict-words').textContent = report.verdict ?? '';
   byId('findings').replaceChildren(...checks.map(([good, yes, no]) =>
-    make('li', { 'data-good': String(good) }, good ? `✓ ${yes}` : `✗ ${no}`)));
+    make('li', { 'data-good': good }, good ? `✓ ${yes}` : `✗ ${no}`)));
   byId('warnings').replaceChildren(...findings.map(({ text, option, value }) => make('li', {}, text,
-    ...(option === '' ? [] : [': try ', make('code', {}, `-${option.replaceAll('_', '-')} ${value}`)]))));
+    option === '' ? [] : [': try ', make('code', {}, `-${option.replaceAll('_', '-')} ${value}`)])));
 }
 
-const headRow = (name, ...cells) =>
-  make('tr', {}, make('th', { scope: 'row' }, name), ...cells);
+const headRow = (name, ...cells) => make('tr', {}, make('th', { scope: 'row' }, name), cells);
 
-function showPairs(id, pairs) {
-  byId(id).replaceChildren(make('table', {}, pairs.map(([name, value]) =>
-    headRow(name, make('td', {}, inWords(value))))));
-}
+const showTable = (id, rows) => byId(id).replaceChildren(make('table', {}, rows));
 
-/** A table of objects that have the same keys. */
-function showGrid(id, list) {
-  byId(`${id}-card`).hidden = list.length === 0;
-  const keys = Object.keys(list[0] ?? {});
-  byId(id).replaceChildren(make('table', {},
-    make('tr', {}, keys.map((key) => make('th', { scope: 'col' }, key.replaceAll('_', ' ')))),
-    list.map((entry) => make('tr', {}, keys.map((key) => make('td', {}, inWords(entry[key])))))));
-}
+const showPairs = (id, pairs) =>
+  showTable(id, pairs.map(([name, value]) => headRow(name, make('td', {}, inWords(value)))));
 
-function showTables(data) {
-  const report = data.report;
-  const embedding = report.embedding ?? {};
-  const { box_min: low, box_max: high } = report.measures ?? {};
+function showTables({ report, command }) {
+  const { embedding = {}, diagnosis, measures } = report;
   showPairs('numbers', [
     ['Points read', report.points],
     ['Points not finite', report.left_out?.not_finite?.length || undefined],
@@ -105,19 +84,25 @@ function showTables(data) {
     ['Triangles', report.triangles],
     ['Openings left open', report.boundary?.length || undefined],
     ['Handles', report.handles?.filter((handle) => !handle.is_cut).length || undefined],
-    ['Edges outside the graph', report.diagnosis?.edges_outside_graph],
-    ['Volume', report.measures?.volume],
-    ['Area', report.measures?.area],
-    ['Mean edge length', report.measures?.mean_edge_length],
-    ['Size', high?.map((x, c) => number(x - low[c])).join(' × ')],
+    ['Edges outside the graph', diagnosis?.edges_outside_graph],
+    ['Volume', measures?.volume],
+    ['Area', measures?.area],
+    ['Mean edge length', measures?.mean_edge_length],
+    ['Size', measures?.box_max?.map((x, c) => number(x - measures.box_min[c])).join(' × ')],
     ['Residual', embedding.residual],
     ['Stopped', embedding.stop_reason?.replaceAll('_', ' ')],
     ['Points moved by smoothing (max)', report.smoothing?.max_displacement],
     ['Peak memory [bytes]', report.peak_memory_bytes],
   ].filter(([, value]) => value !== undefined && value !== null));
   showPairs('options', Object.entries(report.options ?? {}));
-  showGrid('levels', embedding.levels ?? []);
-  byId('command').textContent = data.command;
+  const levels = embedding.levels ?? [];
+  const keys = Object.keys(levels[0] ?? {}); // of all levels
+  byId('levels-card').hidden = levels.length === 0;
+  showTable('levels', [
+    make('tr', {}, keys.map((key) => make('th', { scope: 'col' }, key.replaceAll('_', ' ')))),
+    ...levels.map((level) => make('tr', {}, keys.map((key) => make('td', {}, inWords(level[key]))))),
+  ]);
+  byId('command').textContent = command;
   byId('json').addEventListener('toggle', () => {
     byId('json').lastChild.textContent = JSON.stringify(report, null, 2);
   });
@@ -125,53 +110,43 @@ function showTables(data) {
 
 function showStages(stages) {
   const longest = Math.max(...stages.map((stage) => stage.seconds), 1e-9);
-  byId('stages').replaceChildren(make('table', {}, stages.map((stage) =>
-    headRow(stage.name.replaceAll('_', ' '),
-      make('td', { class: 'meter' },
-        make('div', { style: { width: `${(100 * stage.seconds) / longest}%` } })),
-      make('td', {}, `${number(stage.seconds, 3)} s`)))));
+  showTable('stages', stages.map(({ name, seconds }) => headRow(name.replaceAll('_', ' '),
+    make('td', { class: 'meter' }, make('div', { style: { width: `${(100 * seconds) / longest}%` } })),
+    make('td', {}, `${number(seconds, 3)} s`))));
 }
 
 /**
- * A curve of positive numbers over their index on a logarithmic axis. A click calls `seek` with an
- * index. Returns a function that moves a cursor to an index; null hides it.
+ * A curve of residuals over their index on a logarithmic axis. A click calls `seek` with an index. Returns a function
+ * that moves a cursor to an index; null hides it.
  */
-function showCurve(id, values, label, seek) {
+function showCurve(values, label, seek) {
   const [width, height, left, bottom] = [560, 220, 50, 186];
+  const right = width - 10;
   const last = Math.max(values.length - 1, 1);
-  const known = values.map((value, i) => [i, Math.log10(value)])
-    .filter(([, exponent]) => Number.isFinite(exponent));
+  const known = values.map((value, i) => [i, Math.log10(value)]).filter(([, exponent]) => Number.isFinite(exponent));
   if (known.length < 2) return () => {};
-  const exponents = known.map(([, exponent]) => exponent);
-  const low = Math.floor(exponents.reduce((a, b) => Math.min(a, b)));
-  const high = Math.max(Math.ceil(exponents.reduce((a, b) => Math.max(a, b))), low + 1);
-  const x = (i) => left + (i / last) * (width - left - 10);
+  const low = Math.floor(known.reduce((least, [, e]) => Math.min(least, e), Infinity));
+  const high = Math.max(Math.ceil(known.reduce((most, [, e]) => Math.max(most, e), -Infinity)), low + 1);
+  const x = (i) => left + (i / last) * (right - left);
   const y = (e) => 10 + ((high - e) / (high - low)) * (bottom - 10);
-  const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label });
-  const step = Math.ceil((high - low) / 6);
-  for (let e = low; e <= high; e += step) {
-    root.append(svg('line', { x1: left, x2: width - 10, y1: y(e), y2: y(e), class: 'grid' }),
+  const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label, onclick: (event) => {
+    const rect = root.getBoundingClientRect();
+    const along = (((event.clientX - rect.left) / rect.width) * width - left) / (right - left);
+    seek(Math.round(Math.min(Math.max(along, 0), 1) * last));
+  } });
+  for (let e = low; e <= high; e += Math.ceil((high - low) / 6)) {
+    root.append(svg('line', { x1: left, x2: right, y1: y(e), y2: y(e), class: 'grid' }),
       svg('text', { x: left - 6, y: y(e) + 4, 'text-anchor': 'end' }, `1e${e}`));
   }
-  root.append(svg('text', { x: left, y: bottom + 16 }, '0'),
-    svg('text', { x: width - 10, y: bottom + 16, 'text-anchor': 'end' }, number(last)),
-    svg('text', { x: width / 2, y: height - 6, 'text-anchor': 'middle' }, label));
   // Not more points than the curve has pixels, and always the last.
   const stride = Math.ceil(known.length / 2000);
   const shown = known.filter((entry, k) => k % stride === 0 || k === known.length - 1);
-  root.append(svg('path', { class: 'curve',
-    d: `M${shown.map(([i, e]) => `${x(i).toFixed(1)} ${y(e).toFixed(1)}`).join('L')}` }));
   const cursor = svg('line', { y1: 10, y2: bottom, class: 'cursor', visibility: 'hidden' });
-  root.append(cursor);
-  root.addEventListener('click', (event) => {
-    const rect = root.getBoundingClientRect();
-    const along = (((event.clientX - rect.left) / rect.width) * width - left) / (width - left - 10);
-    seek(Math.round(Math.min(Math.max(along, 0), 1) * last));
-  });
-  byId(id).append(root);
-  return (i) => {
-    cursor.setAttribute('visibility', i === null ? 'hidden' : 'visible');
-    cursor.setAttribute('x1', x(i ?? 0));
-    cursor.setAttribute('x2', x(i ?? 0));
-  };
+  root.append(svg('text', { x: left, y: bottom + 16 }, '0'),
+    svg('text', { x: right, y: bottom + 16, 'text-anchor': 'end' }, number(last)),
+    svg('text', { x: width / 2, y: height - 6, 'text-anchor': 'middle' }, label),
+    svg('path', { class: 'curve', d: `M${shown.map(([i, e]) => `${x(i).toFixed(1)} ${y(e).toFixed(1)}`).join('L')}` }),
+    cursor);
+  byId('residual').append(root);
+  return (i) => fill(cursor, { visibility: i === null ? 'hidden' : 'visible', x1: x(i ?? 0), x2: x(i ?? 0) });
 }

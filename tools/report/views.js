@@ -1,10 +1,9 @@
-// Views of one object, drawn by one WebGL context into the parts of one canvas. They share a camera,
-// and each has three.js' controls of it. A frame is drawn only when something changed.
+// Views of one object, drawn by one WebGL context into the parts of one canvas. They share a camera, and each has
+// three.js' controls of it. A frame is drawn only when something changed.
 
 const field_of_view = 28; // degrees
 // A ball of radius 1 fits.
 const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
-const point_pixels = [1, 12]; // diameters of the cloud's points
 
 /** Discs of a diameter in units of the object, within limits in pixels. */
 function discMaterial({ size = 0, pixels, lit = false, color = '#ffffff', on_top = false }) {
@@ -39,20 +38,16 @@ function discMaterial({ size = 0, pixels, lit = false, color = '#ffffff', on_top
   });
 }
 
-/**
- * A lit surface. Where `cells.value` is 1, every other cell of 15 degrees of the sphere is darker;
- * the attribute `place` is where a vertex is on it.
- */
+/** A lit surface. Where `cells.value` is 1, every other cell of 15 degrees of the sphere is darker; the attribute
+    `place` is where a vertex is on it. */
 function surfaceMaterial(options, cells) {
   const material = new THREE.MeshPhongMaterial({
-    vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1, ...options,
+    vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...options,
   });
   material.onBeforeCompile = (shader) => {
     shader.uniforms.cells = cells;
     shader.vertexShader = `attribute vec3 place; varying vec3 v_place;
-      ${shader.vertexShader.replace('#include <color_vertex>', `$&
-        v_place = place;`)}`;
+      ${shader.vertexShader.replace('#include <color_vertex>', '$&\n v_place = place;')}`;
     shader.fragmentShader = `uniform float cells; varying vec3 v_place;
       ${shader.fragmentShader.replace('#include <color_fragment>', `$&
         if (cells > 0.0) {
@@ -78,8 +73,7 @@ const colorsOf = (vertices) =>
 class Views {
   constructor(canvas, context, arrays, { sphere_turn, spacing, report, handles }) {
     this.canvas = canvas;
-    // Meshes with handles have no sphere.
-    this.names = arrays.sphere ? ['mesh', 'cloud', 'sphere'] : ['mesh', 'cloud'];
+    this.names = ['mesh', 'cloud', ...(arrays.sphere ? ['sphere'] : [])]; // meshes with handles have no sphere
     byId('view-sphere').hidden = !arrays.sphere;
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.setPixelRatio(devicePixelRatio);
@@ -90,14 +84,12 @@ class Views {
     this.drawn = 0; // frames
     this.makeScene(arrays, spacing);
     if (arrays.sphere) {
-      const [a, b, c, d, e, f, g, h, i] = sphere_turn;
-      this.align = new THREE.Quaternion().setFromRotationMatrix(
-        new THREE.Matrix4().set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1));
+      this.align = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().set(...sphere_turn));
     }
     if (arrays.history_frames) this.makeHistory(arrays);
     this.makeHandles(handles, arrays.handles);
-    const { up, toward } = firstView(this.positions, this.triangles, arrays.suspicious.values,
-      this.origin, report.closed);
+    const { up, toward } = firstView(this.positions, this.triangles, arrays.suspicious.values, this.origin,
+      report.closed);
     this.camera.up.copy(up);
     this.start = toward.multiplyScalar(start_distance);
     this.target = new THREE.Vector3();
@@ -111,8 +103,7 @@ class Views {
     const center = low.map((x, c) => (x + high[c]) / 2);
     const radius = Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) || 1;
     /** Rows of points with the object's middle at 0 and the corners of its box at distance 1. */
-    this.normalized = (array) =>
-      array.numbers().map((x, i) => (x - center[i % 3]) / radius);
+    this.normalized = (array) => array.numbers().map((x, i) => (x - center[i % 3]) / radius);
     this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
     this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
     this.positions = this.normalized(arrays.positions);
@@ -135,29 +126,25 @@ class Views {
     this.normal = mesh.getAttribute('normal');
     this.surfaces = { mesh: this.addSurface('mesh', mesh) };
     if (this.sphere) {
-      this.surfaces.sphere = this.addSurface('sphere',
-        geometryOf({ position: place, normal: place, place, color: this.color }, index));
+      const sphere = geometryOf({ position: place, normal: place, place, color: this.color }, index);
+      this.surfaces.sphere = this.addSurface('sphere', sphere);
     }
-    let edges = 0;
+    let sides = 0;
     for (let t = 0; t < this.triangles.length; t += 3) {
-      edges += this.vector(this.triangles[t]).distanceTo(this.vector(this.triangles[t + 1]));
+      sides += this.vector(this.triangles[t]).distanceTo(this.vector(this.triangles[t + 1]));
     }
-    this.edge = edges / (this.triangles.length / 3);
+    this.edge = sides / (this.triangles.length / 3);
+    const cloud = arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position;
     // Discs that just cover a square grid of points.
-    const size = spacing / radius;
-    this.addPoints('cloud', {
-      position: arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position,
-      normal: this.normal, color: this.color,
-    }, discMaterial({ size, pixels: point_pixels, lit: true }));
+    this.addPoints('cloud', { position: cloud, normal: this.normal, color: this.color },
+      { size: spacing / radius, pixels: [1, 12], lit: true });
     if (arrays.outliers) {
       const points = rowsOf(this.normalized(arrays.outliers));
-      this.addPoints('cloud', { position: points, normal: points },
-        discMaterial({ pixels: [6, 6], color: outlier_color }));
+      this.addPoints('cloud', { position: points, normal: points }, { pixels: [6, 6], color: outlier_color });
     }
-    this.marks = Object.fromEntries(this.names.map((name) => [name,
-      this.addPoints(name, { position: rowsOf(new Float32Array(3)),
-        normal: rowsOf(new Float32Array(3)) },
-      discMaterial({ pixels: [13, 13], color: '#ffd600', on_top: true }))]));
+    this.marks = Object.fromEntries(this.names.map((name) => [name, this.addPoints(name,
+      { position: rowsOf(new Float32Array(3)), normal: rowsOf(new Float32Array(3)) },
+      { pixels: [13, 13], color: '#ffd600', on_top: true })]));
     this.flags = [];
   }
 
@@ -165,22 +152,34 @@ class Views {
     return new THREE.Vector3().fromArray(rows, 3 * vertex);
   }
 
+  /** Where vertices are in a view. */
+  rowsIn(name) {
+    return name === 'sphere' ? this.sphere : this.positions;
+  }
+
+  /** Gives the camera the shape of a view: its rectangle. */
+  aim(name) {
+    const rect = byId(`view-${name}`).getBoundingClientRect();
+    this.camera.aspect = rect.width / rect.height;
+    this.camera.updateProjectionMatrix();
+    return rect;
+  }
+
   /** Both sides of a surface, of which the inner is dark, and its edges. */
   addSurface(name, geometry) {
     const group = new THREE.Group();
-    group.add(
-      new THREE.Mesh(geometry, surfaceMaterial({ specular: 0x141414 }, this.cells)),
-      new THREE.Mesh(geometry, surfaceMaterial(
-        { color: 0x605858, specular: 0, side: THREE.BackSide }, this.cells)),
-      new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
-        wireframe: true, color: 0, opacity: 0.3, transparent: true, depthWrite: false })));
+    group.add(...[
+      surfaceMaterial({ specular: 0x141414 }, this.cells),
+      surfaceMaterial({ color: 0x605858, specular: 0, side: THREE.BackSide }, this.cells),
+      new THREE.MeshBasicMaterial({ wireframe: true, color: 0, opacity: 0.3, transparent: true, depthWrite: false }),
+    ].map((material) => new THREE.Mesh(geometry, material)));
     group.children[2].visible = false;
     this.add(name, group);
     return group;
   }
 
-  addPoints(name, attributes, material) {
-    return this.add(name, new THREE.Points(geometryOf(attributes), material));
+  addPoints(name, attributes, looks) {
+    return this.add(name, new THREE.Points(geometryOf(attributes), discMaterial(looks)));
   }
 
   add(name, object) {
@@ -203,29 +202,26 @@ class Views {
     panel.addEventListener('pointerdown', (event) => { down = event; });
     panel.addEventListener('pointerup', (event) => {
       if (down && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 4) {
-        this.pick(name, panel, event);
+        this.pick(name, event);
       }
     });
     return controls;
   }
 
   /** Marks the vertex next to the pointer. The cloud's points are those of the mesh. */
-  pick(name, panel, event) {
-    const rect = panel.getBoundingClientRect();
-    this.camera.aspect = rect.width / rect.height;
-    this.camera.updateProjectionMatrix();
+  pick(name, event) {
+    const rect = this.aim(name);
     this.scene.updateMatrixWorld();
     const ray = new THREE.Raycaster();
     ray.setFromCamera({
       x: (2 * (event.clientX - rect.left)) / rect.width - 1,
       y: 1 - (2 * (event.clientY - rect.top)) / rect.height,
     }, this.camera);
-    const surface = this.surfaces[name === 'sphere' ? 'sphere' : 'mesh'].children[0];
+    const surface = (this.surfaces[name] ?? this.surfaces.mesh).children[0];
     const [hit] = ray.intersectObject(surface);
     if (!hit) return this.mark(null);
-    const rows = name === 'sphere' ? this.sphere : this.positions;
     const at = surface.worldToLocal(hit.point.clone());
-    const distance = (vertex) => this.vector(vertex, rows).distanceTo(at);
+    const distance = (vertex) => this.vector(vertex, this.rowsIn(name)).distanceTo(at);
     return this.mark([hit.face.a, hit.face.b, hit.face.c]
       .reduce((best, vertex) => (distance(vertex) < distance(best) ? vertex : best)));
   }
@@ -235,9 +231,8 @@ class Views {
     for (const [name, points] of Object.entries(this.marks)) {
       points.visible = vertex !== null && (name !== 'sphere' || this.frame_at === null);
       if (vertex !== null) {
-        const position = points.geometry.getAttribute('position');
-        position.array.set(this.vector(vertex, name === 'sphere' ? this.sphere : this.positions)
-          .toArray());
+        const { position } = points.geometry.attributes;
+        this.vector(vertex, this.rowsIn(name)).toArray(position.array);
         position.needsUpdate = true;
       }
     }
@@ -256,8 +251,8 @@ class Views {
       this.groups.sphere.position.copy(place).sub(normal);
     }
     this.target.copy(place);
-    this.camera.position.copy(place).addScaledVector(normal,
-      Math.min(Math.max(60 * this.edge, 0.1), start_distance));
+    this.camera.position.copy(place)
+      .addScaledVector(normal, Math.min(Math.max(60 * this.edge, 0.1), start_distance));
     this.mark(vertex);
     this.controls[0].update();
   }
@@ -272,8 +267,6 @@ class Views {
     this.mark(null);
     this.controls[0].update();
   }
-
-  // --- looks
 
   setColors(colors, cells) {
     this.color.array.set(colors);
@@ -299,8 +292,7 @@ class Views {
       const index = new Uint32Array(3 * triangles.length);
       triangles.forEach((t, k) => index.set(this.triangles.subarray(3 * t, 3 * t + 3), 3 * k));
       const { position, normal } = this.surfaces[name].children[0].geometry.attributes;
-      const object = new THREE.Mesh(
-        geometryOf({ position, normal }, new THREE.BufferAttribute(index, 1)),
+      const object = new THREE.Mesh(geometryOf({ position, normal }, new THREE.BufferAttribute(index, 1)),
         new THREE.MeshPhongMaterial({ color, specular: 0, side: THREE.DoubleSide }));
       object.renderOrder = groups.length - i;
       return this.add(name, object);
@@ -308,16 +300,12 @@ class Views {
     this.setFrame(this.frame_at);
   }
 
-  // --- the handles
-
   /** Shows the loops of handles: [{points, is_cut}], with the rows of all of them. */
   makeHandles(handles, array) {
-    const rows = array ? this.normalized(array) : [];
+    const nodes = array ? this.normalized(array) : [];
     let first = 0;
     this.handles = handles.map(({ points, is_cut }) => {
-      const loop = [];
-      for (let i = 0; i < points; ++i) loop.push(this.vector(first + i, rows));
-      first += points;
+      const loop = Array.from({ length: points }, () => this.vector(first++, nodes));
       const radius = Math.min(Math.max(this.edge / 4, 0.003), 0.008);
       this.add('mesh', new THREE.Mesh(
         new THREE.TubeGeometry(new THREE.CatmullRomCurve3(loop, true), 4 * points, radius, 6, true),
@@ -337,12 +325,9 @@ class Views {
     this.lookAt(nearest);
   }
 
-  // --- the unfolding
-
   makeHistory(arrays) {
-    const places = arrays.history_positions;
     this.history = arrays.history_frames.numbers();
-    this.history_places = this.normalized(places);
+    this.history_places = this.normalized(arrays.history_positions);
     this.frame = rowsOf(new Float32Array(this.history_places.length));
     this.history_color = colorsOf(this.history_places.length / 3);
     this.unfolding = this.addSurface('sphere', geometryOf(
@@ -361,11 +346,9 @@ class Views {
       const before = Math.floor(at) * size;
       const after = Math.min(before + size, this.history.length - size);
       const share = at % 1;
-      const place = new THREE.Vector3();
-      for (let i = 0; i < size; i += 3) {
-        place.fromArray(this.history, before + i)
-          .lerp(new THREE.Vector3().fromArray(this.history, after + i), share)
-          .normalize().toArray(out, i);
+      for (let i = 0; i < size / 3; ++i) {
+        this.vector(before / 3 + i, this.history).lerp(this.vector(after / 3 + i, this.history), share)
+          .normalize().toArray(out, 3 * i);
       }
       this.frame.needsUpdate = true;
     }
@@ -379,8 +362,6 @@ class Views {
     }
     this.request();
   }
-
-  // --- drawing
 
   request() {
     if (this.requested) return;
@@ -399,12 +380,10 @@ class Views {
     }
     this.light.position.set(-0.5, 0.7, 1).applyQuaternion(this.camera.quaternion);
     for (const name of this.names) {
-      const rect = byId(`view-${name}`).getBoundingClientRect();
+      const rect = this.aim(name);
       const part = [rect.left - all.left, all.bottom - rect.bottom, rect.width, rect.height];
       this.renderer.setViewport(...part);
       this.renderer.setScissor(...part);
-      this.camera.aspect = rect.width / rect.height;
-      this.camera.updateProjectionMatrix();
       for (const other of this.names) this.groups[other].visible = other === name;
       this.scene.traverse(({ material }) => {
         if (material?.uniforms?.scale) {
