@@ -9,7 +9,6 @@
 #include "common/text.h"
 #include "scan_shapes.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -87,8 +86,7 @@ void parse(const std::string& name, const CommandLine& command_line, Settings& s
   scan.shape = lowerCase(name);
   if (const auto preset = presets.find(scan.shape); preset != presets.end())
     std::tie(scan.shape, scan.points) = preset->second;
-  if (std::none_of(allShapes().begin(), allShapes().end(),
-                   [&](const Shape& shape) { return shape.name == scan.shape; }))
+  if (findShape(scan.shape) == nullptr)
     throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + toolText().name + " -list' for the shapes");
   command_line.apply(optionsOf(settings));
