@@ -15,9 +15,13 @@ import sys
 import tempfile
 from random import Random
 
+import numpy as np
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+from draw import read_ply  # noqa: E402
+
 TOOLS = pathlib.Path(os.environ.get("TOOLS", ROOT / "build" / "release" / "bin")).resolve()
 PICTURES = ROOT / "doc" / "pictures"
 GITHUB = ROOT / ".github"
@@ -26,15 +30,15 @@ SIDE = "--view=30,10"
 PAPER = ["-method", "paper"]
 
 
-def run(program, *arguments):
-    call(TOOLS / f"pcl_spherical_param_{program}", *arguments)
-
-
 def call(*words):
     command = [str(word) for word in words]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 3):  # 3: a mesh whose triangles intersect
         sys.exit(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}")
+
+
+def run(program, *arguments):
+    call(TOOLS / f"pcl_spherical_param_{program}", *arguments)
 
 
 def scan(shape, points, *options):
@@ -65,13 +69,7 @@ def save(path, picture):
 
 def beside(path, *pictures):
     """Puts pictures of the same height side by side."""
-    pictures = [Image.open(picture).convert("RGB") for picture in pictures]
-    row = Image.new("RGB", (sum(picture.width for picture in pictures), pictures[0].height), "white")
-    left = 0
-    for picture in pictures:
-        row.paste(picture, (left, 0))
-        left += picture.width
-    save(path, row)
+    save(path, Image.fromarray(np.hstack([Image.open(picture).convert("RGB") for picture in pictures])))
 
 
 def demo():
@@ -117,26 +115,21 @@ def openings():
     mesh(cloud, "closed", "-surface", "closed")
     mesh(cloud, "open", "-surface", "open", "-sphere", "sphere.ply")
     draw(PICTURES / "openings.png", "1320x400", [(cloud, "points"), ("closed.ply", "closed: the openings are filled"),
-         ("open.ply", "open"), ("sphere.ply", "directions: room for the openings")], "--edges", "--view=60,15",
-         "--view=60,15", "--view=60,15", "--view=60,15")  # fmt: skip
+         ("open.ply", "open"), ("sphere.ply", "directions: room for the openings")],
+         "--edges", "--view=60,15")  # fmt: skip
 
 
 def handles():
     """The points beside the loops of the handles are left out to show the cut."""
-    run("scan", "double_torus", "double.xyz", "-points", 5000)
-    mesh("double.xyz", "glued")
-    points = [[float(x) for x in line.split()[:3]] for line in open("double.xyz")]
-    loops = [points[v] for handle in json.loads(pathlib.Path("report.json").read_text())["handles"]
-             for v in handle["loop"]]  # fmt: skip
-    with open("cut.xyz", "w") as cut:
-        for point in points:
-            if min(sum((x - y) ** 2 for x, y in zip(point, node)) for node in loops) > 0.055**2:
-                cut.write(" ".join(str(x) for x in point) + "\n")
+    cloud = scan("double_torus", 5000)
+    mesh(cloud, "glued")
+    points, report = read_ply(cloud)[0], json.loads(pathlib.Path("report.json").read_text())
+    loops = points[[v for handle in report["handles"] for v in handle["loop"]]]
+    np.savetxt("cut.xyz", [point for point in points if np.linalg.norm(loops - point, axis=1).min() > 0.055])
     mesh("cut.xyz", "cut", "-handles", "none", "-surface", "open", "-sphere", "sphere.ply")
-    run("scan", "double_torus", "points.ply", "-points", 5000)
-    draw(PICTURES / "handles.png", "1320x330", [("points.ply", "points"), ("cut.ply", "cut along the loops of two handles"),
-         ("sphere.ply", "a sphere with four discs taken out"), ("glued.ply", "glued: genus 2")], "--edges",
-         "--view=0,50", "--view=0,50", "--view=0,50", "--view=0,50")  # fmt: skip
+    draw(PICTURES / "handles.png", "1320x330", [(cloud, "points"), ("cut.ply", "cut along the loops of two handles"),
+         ("sphere.ply", "a sphere with four discs taken out"), ("glued.ply", "glued: genus 2")],
+         "--edges", "--view=0,50")  # fmt: skip
 
 
 def embedding():
@@ -157,15 +150,11 @@ def smoothing():
 
 def consolidation():
     """Four scans of one surface, each with noise and a little off its place."""
-    random = Random(2)
-    with open("scans.xyz", "w") as cloud:
-        for seed in range(1, 5):
-            run("scan", "head", "one.xyz", "-points", 6000, "-noise", 0.4, "-seed", seed)
-            points = [[float(x) for x in line.split()[:3]] for line in open("one.xyz")]
-            extent = max(points)[0] - min(points)[0]
-            shift = [random.gauss(0, 0.003 * extent) for _ in range(3)]
-            for point in points:
-                cloud.write(" ".join(f"{x + d:.6g}" for x, d in zip(point, shift)) + "\n")
+    random, scans = Random(2), []
+    for seed in range(1, 5):
+        points = read_ply(scan("head", 6000, "-noise", 0.4, "-seed", seed))[0]
+        scans.append(points + [random.gauss(0, 0.003 * np.ptp(points[:, 0])) for _ in range(3)])
+    np.savetxt("scans.xyz", np.concatenate(scans), fmt="%.6g")
     views = []
     for name, options in (("plain", []), ("smoothed", ["-smoothing", "5"]), ("auto", ["-consolidation", "auto"])):
         said = mesh("scans.xyz", name, *options)
@@ -181,7 +170,7 @@ def symptoms():
         mesh(cloud, "before")
         run("reconstruction", cloud, "after.ply", *options)
         draw(PICTURES / f"symptom_{name}.png", "720x300", [("before.ply", "by default"),
-             ("after.ply", " ".join(options))], "--edges" if name == "handle" else "--zoom=1", view)  # fmt: skip
+             ("after.ply", " ".join(options))], view, *(["--edges"] if name == "handle" else []))  # fmt: skip
 
 
 def depth_camera():
@@ -203,14 +192,14 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, openings, handles, embedding, smoothing, consolidation, symptoms, depth_camera, scans]
+ALL = [demo, remesh, morph, pipeline, openings, handles, embedding, smoothing, consolidation, symptoms, depth_camera,
+       scans]  # fmt: skip
 
 
 def main(names):
     known = {picture.__name__: picture for picture in ALL}
-    for name in names:
-        if name not in known:
-            sys.exit(f"there is no picture {name}\nthere are {', '.join(known)}")
+    for name in set(names) - set(known):
+        sys.exit(f"there is no picture {name}\nthere are {', '.join(known)}")
     for picture in [known[name] for name in names] or ALL:
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)

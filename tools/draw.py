@@ -3,13 +3,14 @@
 
     tools/draw.py OUT.png FILE... [options]
 
-Captions, views, focuses and zooms are given once for each file, in order; the last view, focus and
-zoom holds for the files that follow. The projection is orthographic. A value that begins with a
-minus sign is written --view=-30,10. Needs the Debian packages python3-numpy and python3-matplotlib.
+Captions and views are given once for each file, in order; the last view holds for the files that follow. The
+projection is orthographic. A value that begins with a minus sign is written --view=-30,10. Needs the Debian packages
+python3-numpy and python3-matplotlib.
 """
 
 import argparse
 import os
+import pathlib
 import sys
 
 try:
@@ -25,8 +26,8 @@ TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4"
          "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
          "float32": "f4", "float64": "f8"}  # fmt: skip
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
-# Drawn this many times larger, without antialiasing, and reduced at the end: triangles that are
-# antialiased one by one show seams.
+# Drawn this many times larger, without antialiasing, and reduced at the end: triangles that are antialiased one by one
+# show seams.
 SCALE = 3
 BACK = (0.95, 0.62, 0.42)  # the colour of triangles seen from behind, with --back
 
@@ -106,7 +107,7 @@ def direction_colors(points):
     return 0.66 + 0.32 * away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-300)
 
 
-def draw_view(axes, points, colors, triangles, view=(25, 20), focus=None, zoom=1.0, edges=False, back=False):
+def draw_view(axes, points, colors, triangles, view, edges, back):
     """Draws one cloud or mesh; azimuth and elevation of the view in degrees."""
     a, e = np.radians(view)
     camera = np.array([[np.cos(a), np.sin(a), 0.0],
@@ -115,16 +116,13 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), focus=None, zoom=1
     seen = points @ camera.T
     colors = np.broadcast_to(np.array([0.74, 0.79, 0.86]) if colors is None else colors, points.shape)
     low, high = seen.min(axis=0), seen.max(axis=0)
-    middle = (low + high)[:2] / 2 if focus is None else (camera @ np.asarray(focus, float))[:2]
+    middle = (low + high)[:2] / 2
     box = axes.get_window_extent()
-    unit = max((high - low)[0] / box.width, (high - low)[1] / box.height, 1e-300) / (0.94 * zoom)
+    unit = max((high - low)[0] / box.width, (high - low)[1] / box.height, 1e-300) / 0.94
     half = np.array([box.width, box.height]) * unit / 2
     axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
     axes.axis("off")
     if len(triangles):
-        flat = seen[triangles][:, :, :2]
-        inside = ((flat.max(axis=1) >= middle - half) & (flat.min(axis=1) <= middle + half)).all(axis=1)
-        triangles = triangles[inside]
         triangles = triangles[np.argsort(seen[triangles][:, :, 2].mean(axis=1))]
         corners = seen[triangles]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -151,7 +149,7 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), focus=None, zoom=1
                      s=np.clip(width, 0.8 * SCALE, 3.5 * SCALE) ** 2, antialiased=False)  # fmt: skip
 
 
-def draw(out, views, size, captions=()):
+def draw(out, views, size, captions):
     """Draws views (dictionaries of draw_view's arguments) side by side."""
     # In inches; matplotlib rounds the pixels down.
     figure = pyplot.figure(figsize=[(pixels * SCALE + 0.1) / 100 for pixels in size], dpi=100)
@@ -168,10 +166,8 @@ def draw(out, views, size, captions=()):
     try:
         image.imsave(f"{out}.part", pixels, format="png")
         os.replace(f"{out}.part", out)
-    except OSError:
-        if os.path.exists(f"{out}.part"):
-            os.remove(f"{out}.part")
-        raise
+    finally:
+        pathlib.Path(f"{out}.part").unlink(missing_ok=True)
 
 
 def numbers(text):
@@ -190,32 +186,24 @@ def main(arguments=None):
     parser.add_argument("--colors", metavar="FILE", help="colour each point by the direction of the same point of "
                         "FILE, in all files with as many points")  # fmt: skip
     parser.add_argument("--view", action="append", type=numbers, metavar="AZ,EL", help="degrees (default 25,20)")
-    parser.add_argument("--focus", action="append", type=numbers, metavar="X,Y,Z", help="middle of the view")
-    parser.add_argument("--zoom", action="append", type=numbers, metavar="F", help="times larger (default 1)")
     parser.add_argument("--edges", action="store_true", help="draw the edges of the triangles")
     parser.add_argument("--back", action="store_true", help="draw triangles seen from behind in another colour")
     words = parser.parse_intermixed_args(arguments)
     size = [int(pixels) for pixels in words.size or (440 * len(words.files), 440)]
     if len(size) != 2 or not all(50 <= pixels <= 5000 for pixels in size):
         parser.error("--size: give a width and a height of 50 to 5000 pixels, such as 1320x440")
-    for name, width in (("view", 2), ("focus", 3), ("zoom", 1)):
-        if any(len(value) != width for value in getattr(words, name) or []):
-            parser.error(f"--{name}: give {width} numbers with commas between them")
-    if any(zoom <= 0 for (zoom,) in words.zoom or []):
-        parser.error("--zoom: give a number above 0")
+    turns = words.view or [(25, 20)]
+    if any(len(turn) != 2 for turn in turns):
+        parser.error("--view: give 2 numbers with commas between them")
     path = words.colors
     try:
         tints = direction_colors(read_ply(path)[0]) if path else []
         views = []
         for i, path in enumerate(words.files):
             points, colors, triangles = read_ply(path)
-            view = {"points": points, "triangles": triangles, "edges": words.edges, "back": words.back,
-                    "colors": tints if len(tints) == len(points) else colors}  # fmt: skip
-            for name in ("view", "focus", "zoom"):
-                if getattr(words, name):
-                    value = getattr(words, name)[min(i, len(getattr(words, name)) - 1)]
-                    view[name] = value[0] if name == "zoom" else value
-            views.append(view)
+            views.append({"points": points, "triangles": triangles, "edges": words.edges, "back": words.back,
+                          "view": turns[min(i, len(turns) - 1)],
+                          "colors": tints if len(tints) == len(points) else colors})  # fmt: skip
         path = words.out
         draw(path, views, size, words.caption)
     except OSError as error:
