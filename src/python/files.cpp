@@ -9,7 +9,6 @@
 #include "common/output_file.h"
 #include "common/point_table.h"
 #include "common/reconstruction_report.h"
-#include "common/report_page.h"
 #include "python/arrays.h"
 #include "python/conversions.h"
 #include "spherical_param/version.h"

@@ -2,7 +2,6 @@
 
 #include "common/errors.h"
 #include "common/report_mesh.h"
-#include "common/report_page.h"
 #include "common/text.h"
 #include "space_filling_curve.h"
 #include "spherical_param/result_fields.h"

@@ -7,6 +7,7 @@
 #include "common/reconstruction_options.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -33,6 +34,13 @@ struct HtmlReportInput {
   const Surface* surface = nullptr;            ///< to be shown
   int threads = 0;
 };
+
+/// The page without its data: HTML with one line `<!--DATA-->`, in place of which the program and
+/// the data come. Empty in a build without three.js: there is no -report then.
+std::string_view reportPage();
+
+/// The JavaScript that shows the data, with three.js.
+std::string_view reportProgram();
 
 /// Writes a page that opens in a browser without other files or a network.
 /// \throw Failure if it cannot be stored.

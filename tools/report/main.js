@@ -161,7 +161,7 @@ function showPlaces(kinds, views, select) {
   }
 }
 
-function describe(vertex, modes, views, arrays) {
+function describe(vertex, modes, arrays) {
   if (vertex === null) return 'No vertex is marked.';
   const place = arrays.positions.numbers().subarray(3 * vertex, 3 * vertex + 3);
   return [`Vertex at (${Array.from(place, (x) => number(x)).join(', ')})`,
@@ -237,9 +237,7 @@ function showViews(data, arrays, context) {
   select.addEventListener('change', paint);
   byId('wireframe').addEventListener('change', (event) => views.setWireframe(event.target.checked));
   byId('reset').addEventListener('click', () => views.reset());
-  views.onMark = (vertex) => {
-    byId('readout').textContent = describe(vertex, modes, views, arrays);
-  };
+  views.onMark = (vertex) => { byId('readout').textContent = describe(vertex, modes, arrays); };
   views.onMark(null);
   if (data.outliers > 0) {
     byId('cloud-note').replaceChildren(make('span', { class: 'swatch', style: { background: outlier_color } }),
@@ -249,14 +247,13 @@ function showViews(data, arrays, context) {
   let seek = () => {};
   if (views.unfolding) {
     views.history_color.array.set(placeColors(views.history_places, views.box));
-    let shown;
-    const moveCursor = showCurve(data.frames.map((frame) => frame.residual), 'frame of the unfolding',
-      (frame) => seek(frame));
+    let was_result;
+    const residuals = data.frames.map((frame) => frame.residual);
+    const moveCursor = showCurve(residuals, 'frame of the unfolding', (frame) => seek(frame));
     seek = makePlayer(views, data.frames, (frame) => {
       moveCursor(frame);
-      const was_result = shown === null;
-      shown = frame;
-      if (was_result !== (frame === null) || byId('legend').childElementCount === 0) paint();
+      if (was_result !== (frame === null)) paint();
+      was_result = frame === null;
     });
   }
   showPlaces(kinds, views, (key) => {

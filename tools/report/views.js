@@ -5,8 +5,8 @@ const field_of_view = 28; // degrees
 // A ball of radius 1 fits.
 const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
 
-/** Discs of a diameter in units of the object, within limits in pixels. */
-function discMaterial({ size = 0, pixels, lit = false, color = '#ffffff', on_top = false }) {
+/** Discs of a diameter in units of the object, within limits in pixels. `scale` is a uniform. */
+function discMaterial(scale, { size = 0, pixels, lit = false, color = '#ffffff', on_top = false }) {
   return new THREE.ShaderMaterial({
     vertexShader: `
       uniform float size, scale;
@@ -28,7 +28,7 @@ function discMaterial({ size = 0, pixels, lit = false, color = '#ffffff', on_top
         gl_FragColor = vec4(${lit ? 'shade' : 'radius > 0.75 ? vec3(0.0) : tint'}, 1.0);
       }`,
     uniforms: {
-      size: { value: size }, scale: { value: 1 },
+      size: { value: size }, scale,
       pixels: { value: new THREE.Vector2(...pixels).multiplyScalar(devicePixelRatio) },
       tint: { value: new THREE.Color(color) },
     },
@@ -81,7 +81,6 @@ class Views {
     this.renderer.setClearColor(0, 0);
     this.camera = new THREE.PerspectiveCamera(field_of_view, 1, 0.01, 50);
     this.frame_at = null; // frame of the unfolding; null: the result
-    this.drawn = 0; // frames
     this.makeScene(arrays, spacing);
     if (arrays.sphere) {
       this.align = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().set(...sphere_turn));
@@ -111,12 +110,15 @@ class Views {
     this.triangles = arrays.triangles.values;
     this.color = colorsOf(this.positions.length / 3);
     this.cells = { value: 0 };
+    this.scale = { value: 1 }; // pixels of a length of 1 at a distance of 1
 
     this.scene = new THREE.Scene();
     this.light = new THREE.DirectionalLight(0xffffff, 0.75);
     this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light, this.light.target);
     this.groups = Object.fromEntries(this.names.map((name) => [name, new THREE.Group()]));
     this.scene.add(...Object.values(this.groups));
+    this.result = new THREE.Group(); // all of the sphere but the unfolding
+    if (this.sphere) this.groups.sphere.add(this.result);
 
     const index = new THREE.BufferAttribute(this.triangles, 1);
     const position = rowsOf(this.positions);
@@ -179,13 +181,13 @@ class Views {
   }
 
   addPoints(name, attributes, looks) {
-    return this.add(name, new THREE.Points(geometryOf(attributes), discMaterial(looks)));
+    return this.add(name, new THREE.Points(geometryOf(attributes), discMaterial(this.scale, looks)));
   }
 
   add(name, object) {
     // Nearly all is in sight: no need for bounds, which change with each frame of the unfolding.
     object.traverse((part) => { part.frustumCulled = false; });
-    this.groups[name].add(object);
+    (name === 'sphere' ? this.result : this.groups[name]).add(object);
     return object;
   }
 
@@ -229,7 +231,7 @@ class Views {
   /** Marks a vertex in all views; null: none. */
   mark(vertex) {
     for (const [name, points] of Object.entries(this.marks)) {
-      points.visible = vertex !== null && (name !== 'sphere' || this.frame_at === null);
+      points.visible = vertex !== null;
       if (vertex !== null) {
         const { position } = points.geometry.attributes;
         this.vector(vertex, this.rowsIn(name)).toArray(position.array);
@@ -297,7 +299,7 @@ class Views {
       object.renderOrder = groups.length - i;
       return this.add(name, object);
     }));
-    this.setFrame(this.frame_at);
+    this.request();
   }
 
   /** Shows the loops of handles: [{points, is_cut}], with the rows of all of them. */
@@ -307,22 +309,18 @@ class Views {
     this.handles = handles.map(({ points, is_cut }) => {
       const loop = Array.from({ length: points }, () => this.vector(first++, nodes));
       const radius = Math.min(Math.max(this.edge / 4, 0.003), 0.008);
-      this.add('mesh', new THREE.Mesh(
-        new THREE.TubeGeometry(new THREE.CatmullRomCurve3(loop, true), 4 * points, radius, 6, true),
-        new THREE.MeshPhongMaterial({ color: is_cut ? cut_handle_color : handle_color })));
+      const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(loop, true), 4 * points, radius, 6, true);
+      const color = is_cut ? cut_handle_color : handle_color;
+      this.add('mesh', new THREE.Mesh(tube, new THREE.MeshPhongMaterial({ color })));
       return { is_cut, loop };
     });
   }
 
   /** Brings a handle to the middle of the views. */
   lookAtHandle({ loop }) {
-    let nearest = 0;
-    let least = Infinity;
-    for (let v = 0; v < this.positions.length / 3; ++v) {
-      const distance = this.vector(v).distanceToSquared(loop[0]);
-      if (distance < least) [nearest, least] = [v, distance];
-    }
-    this.lookAt(nearest);
+    const distances = Array.from({ length: this.positions.length / 3 },
+      (_, vertex) => this.vector(vertex).distanceToSquared(loop[0]));
+    this.lookAt(distances.reduce((best, distance, vertex) => (distance < distances[best] ? vertex : best), 0));
   }
 
   makeHistory(arrays) {
@@ -333,6 +331,7 @@ class Views {
     this.unfolding = this.addSurface('sphere', geometryOf(
       { position: this.frame, normal: this.frame, place: this.frame, color: this.history_color },
       new THREE.BufferAttribute(arrays.history_triangles.values, 1)));
+    this.groups.sphere.add(this.unfolding); // beside the result
     this.unfolding.children[2].visible = true; // colours alone hardly show how it moves
     this.unfolding.visible = false;
   }
@@ -341,25 +340,17 @@ class Views {
   setFrame(at) {
     this.frame_at = at;
     if (at !== null) {
-      const out = this.frame.array;
-      const size = out.length;
-      const before = Math.floor(at) * size;
-      const after = Math.min(before + size, this.history.length - size);
-      const share = at % 1;
-      for (let i = 0; i < size / 3; ++i) {
-        this.vector(before / 3 + i, this.history).lerp(this.vector(after / 3 + i, this.history), share)
-          .normalize().toArray(out, 3 * i);
+      const { count, array } = this.frame;
+      const before = Math.floor(at) * count;
+      const after = Math.min(before + count, this.history.length / 3 - count);
+      for (let i = 0; i < count; ++i) {
+        this.vector(before + i, this.history).lerp(this.vector(after + i, this.history), at % 1)
+          .normalize().toArray(array, 3 * i);
       }
       this.frame.needsUpdate = true;
     }
-    if (this.unfolding) this.unfolding.visible = at !== null;
-    if (this.sphere) {
-      this.surfaces.sphere.visible = at === null;
-      for (const object of this.flags) {
-        if (object.parent === this.groups.sphere) object.visible = at === null;
-      }
-      this.marks.sphere.visible = at === null && this.marked !== null;
-    }
+    this.unfolding.visible = at !== null;
+    this.result.visible = at === null;
     this.request();
   }
 
@@ -385,14 +376,8 @@ class Views {
       this.renderer.setViewport(...part);
       this.renderer.setScissor(...part);
       for (const other of this.names) this.groups[other].visible = other === name;
-      this.scene.traverse(({ material }) => {
-        if (material?.uniforms?.scale) {
-          material.uniforms.scale.value = (rect.height * devicePixelRatio) /
-            (2 * Math.tan((field_of_view * Math.PI) / 360));
-        }
-      });
+      this.scale.value = (rect.height * devicePixelRatio) / (2 * Math.tan((field_of_view * Math.PI) / 360));
       this.renderer.render(this.scene, this.camera);
     }
-    ++this.drawn;
   }
 }
