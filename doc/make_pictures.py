@@ -152,7 +152,8 @@ def consolidation():
     """Four scans of one surface, each with noise and a little off its place."""
     random, scans = Random(2), []
     for seed in range(1, 5):
-        points = read_ply(scan("head", 6000, "-noise", 0.4, "-seed", seed))[0]
+        run("scan", "head", "one.xyz", "-points", 6000, "-noise", 0.4, "-seed", seed)
+        points = np.loadtxt("one.xyz")
         scans.append(points + [random.gauss(0, 0.003 * np.ptp(points[:, 0])) for _ in range(3)])
     np.savetxt("scans.xyz", np.concatenate(scans), fmt="%.6g")
     views = []
