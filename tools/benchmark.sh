@@ -29,14 +29,8 @@ if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
 fi
 
 # CGAL alone compiles for minutes.
-packages=(peers gallery)
-without_peers=OFF
-for word in "$@"; do
-  if [ "$word" = "--quick" ]; then
-    packages=()
-    without_peers=ON
-  fi
-done
+packages=(peers gallery) without_peers=OFF
+[[ " $* " != *" --quick "* ]] || packages=() without_peers=ON
 "$root/tools/setup.sh" "${packages[@]}"
 
 log="$build/benchmark-build.log"

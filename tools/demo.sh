@@ -7,18 +7,13 @@ set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 build="$root/build/release"
-points=20000
-
-usage() {
-  sed -n -e '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
-}
 
 # What to do if the step that is under way fails.
 remedy=""
 trap '[ -z "$remedy" ] || printf "demo.sh: failed; %s\n" "$remedy" >&2' ERR
 
 if [ "$#" -gt 1 ] || [ "${1:-}" = "-h" ] || [ "${1:-}" = "--help" ]; then
-  usage
+  sed -n -e '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   [ "$#" -eq 1 ] && exit 0
   exit 2
 fi
@@ -41,7 +36,7 @@ echo "demo.sh: building in $build (a minute or two at first, seconds later)"
 ) >"$log" 2>&1
 
 remedy="the message above says why; the tools are in $build/bin"
-"$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points "$points"
+"$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points 20000
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
   -sphere "$out/sphere.ply" -json "$out/report.json"
 
@@ -56,8 +51,5 @@ else
 fi
 
 echo
-echo "scan     $out/scan.ply"
-echo "mesh     $out/mesh.ply"
-echo "sphere   $out/sphere.ply"
-echo "report   $out/report.json"
-echo "picture  $picture"
+printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" sphere "$out/sphere.ply" \
+  report "$out/report.json" picture "$picture"

@@ -1,9 +1,5 @@
 #!/usr/bin/env bash
-# Tests reports of the tool in Debian's Chromium, without a window. The last line counts the tests.
-#
-#   tools/test_browser.sh
-#
-# Logs and pictures of the page are in build/test-logs.
+# Tests reports of the tool in Debian's Chromium, without a window. Pictures of the page are in build/test-logs/browser.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tools/common/test_steps.sh
@@ -12,21 +8,19 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # A sound mesh of a file whose name tries to be HTML, a cloud with an opening and outliers, what a
 # depth camera at the origin sees of a ball, and a mesh with handles.
 make_reports() {
-  local bin="$PWD/build/release/bin" evil='a<img src=x onerror=document.title=1>.ply'
+  local tool="$PWD/build/release/bin/pcl_spherical_param" evil='a<img src=x onerror=document.title=1>.ply'
   (
     cd "$work" &&
-      "$bin/pcl_spherical_param_scan" hand "$evil" -points 3000 &&
-      "$bin/pcl_spherical_param_reconstruction" "$evil" mesh.ply -report sound.html &&
-      "$bin/pcl_spherical_param_scan" bowl bowl.xyz -points 3000 &&
+      "${tool}_scan" hand "$evil" -points 3000 &&
+      "${tool}_reconstruction" "$evil" mesh.ply -report sound.html &&
+      "${tool}_scan" bowl bowl.xyz -points 3000 &&
       printf '%s\n' '3 0 1' '-2 1 0' >>bowl.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" bowl.xyz mesh.ply -topology sphere \
-        -outliers 4 -smoothing 3 -report open.html &&
-      "$bin/pcl_spherical_param_scan" sphere ball.xyz -points 3000 &&
-      awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz \
-        >seen.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" seen.xyz mesh.ply -report camera.html &&
-      "$bin/pcl_spherical_param_scan" double_torus double.xyz -points 3000 &&
-      "$bin/pcl_spherical_param_reconstruction" double.xyz mesh.ply -report handles.html
+      "${tool}_reconstruction" bowl.xyz mesh.ply -topology sphere -outliers 4 -smoothing 3 -report open.html &&
+      "${tool}_scan" sphere ball.xyz -points 3000 &&
+      awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz >seen.xyz &&
+      "${tool}_reconstruction" seen.xyz mesh.ply -report camera.html &&
+      "${tool}_scan" double_torus double.xyz -points 3000 &&
+      "${tool}_reconstruction" double.xyz mesh.ply -report handles.html
   )
 }
 

@@ -1,18 +1,9 @@
 #!/usr/bin/env bash
 # The documentation: the site builds without a warning, all links lead somewhere, the demo leaves what
 # it says, and the marked examples of the pages run as printed with an installation of the release build.
-#
-#   tools/test_docs.sh
-#
-# Logs are in build/test-logs.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-if [ "$#" -ne 0 ]; then
-  sed -n -e '2,7s/^# \{0,1\}//p' tools/test_docs.sh
-  exit 2
-fi
-
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 
