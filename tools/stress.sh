@@ -9,16 +9,9 @@
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-quick=()
-seconds=600 # of each fuzzer
-seed=0      # another one each time
-case "${1:-}" in
-"") ;;
---quick)
-  quick=(--quick)
-  seconds=5
-  seed=1
-  ;;
+case "${1:-}" in # seconds of each fuzzer; seed 0: another one each time
+"") quick=() seconds=600 seed=0 ;;
+--quick) quick=(--quick) seconds=5 seed=1 ;;
 *)
   sed -n -e '2,8s/^# \{0,1\}//p' tools/stress.sh
   exit 2

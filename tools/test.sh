@@ -3,17 +3,13 @@
 #
 #   tools/test.sh            gcc build and its tests, formats, scripts, thread sanitizer
 #   tools/test.sh --quick    gcc build, its tests and clang-format only
-#
-# Logs are in build/test-logs.
 set -euo pipefail
-
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-quick=no
 case "${1:-}" in
-"") ;;
+"") quick=no ;;
 --quick) quick=yes ;;
 *)
-  sed -n -e '2,7s/^# \{0,1\}//p' tools/test.sh
+  sed -n -e '2,5s/^# \{0,1\}//p' tools/test.sh
   exit 2
   ;;
 esac
