@@ -17,8 +17,7 @@ HEADER = """\
 # project. tools/benchmark.sh compares the list (--clean) and adds to it (--update-clean); lines are
 # removed by hand. The columns: name, """
 NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
-CLEAN = [("cloud", "cloud"), ("result", "result"), ("remark", "remark"),
-         *((title, title) for title in NUMBERS)]  # fmt: skip
+CLEAN = [(title, title) for title in ("cloud", "result", "remark", *NUMBERS)]
 RESULTS = ("lost", "not found", "other points", "changed", "newly clean", "not clean", "as before")
 
 
@@ -36,8 +35,7 @@ def _read(path):
 
 
 def _write(path, entries):
-    lines = [f"{name:24} {' '.join(map(str, numbers.values()))}\n"
-             for name, numbers in sorted(entries.items())]  # fmt: skip
+    lines = [f"{name:24} {' '.join(map(str, numbers.values()))}\n" for name, numbers in sorted(entries.items())]
     path.write_text(f"{HEADER}{', '.join(NUMBERS)}.\n{''.join(lines)}")
 
 
@@ -75,8 +73,7 @@ def _compare(before, now, fault):
     """One of RESULTS, and a remark."""
     if not before:
         return ("not clean" if fault else "newly clean"), fault
-    changes = [f"{title} {before[title]} -> {now[title]}" for title in now
-               if now[title] != before[title]]  # fmt: skip
+    changes = [f"{title} {before[title]} -> {now[title]}" for title in now if now[title] != before[title]]
     remark = "; ".join(filter(None, [*changes, fault]))
     if now and now["points"] != before["points"]:
         return "other points", remark

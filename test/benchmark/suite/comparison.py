@@ -18,16 +18,13 @@ PEERS = {  # program and method
 }
 
 QUALITY = [("model", "cloud"), ("method", "method"), ("sphere", "closed, manifold, genus 0"),
-           ("used", "points used [%]", 2), ("intersections", "self-intersections"),
-           ("rms", "RMS [%]", 4), ("hausdorff", "Hausdorff [%]", 3),
-           ("normals", "normals off by [deg]", 2), ("seconds", "time [s]", 2),
+           ("used", "points used [%]", 2), ("intersections", "self-intersections"), ("rms", "RMS [%]", 4),
+           ("hausdorff", "Hausdorff [%]", 3), ("normals", "normals off by [deg]", 2), ("seconds", "time [s]", 2),
            ("megabytes", "memory [MB]", 0), ("failure", "remark")]  # fmt: skip
-SUMMARY = [("method", "method"), ("clouds", "clouds"),
-           ("spheres", "closed, manifold, genus 0, all points"),
-           ("clean", "of these without self-intersections"),
-           ("rms", "RMS, times ours (median)", 2), ("hausdorff", "Hausdorff, times ours (median)", 2),
-           ("edges", "true edges (mean) [%]", 1), ("seconds", "time, times ours (median)", 2),
-           ("megabytes", "memory, times ours (median)", 2)]  # fmt: skip
+SUMMARY = [("method", "method"), ("clouds", "clouds"), ("spheres", "closed, manifold, genus 0, all points"),
+           ("clean", "of these without self-intersections"), ("rms", "RMS, times ours (median)", 2),
+           ("hausdorff", "Hausdorff, times ours (median)", 2), ("edges", "true edges (mean) [%]", 1),
+           ("seconds", "time, times ours (median)", 2), ("megabytes", "memory, times ours (median)", 2)]  # fmt: skip
 RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one thread [s]", 2),
         ("gain", "one thread / all", 2), ("peer", "CGAL advancing front [s]", 2),
         ("ratio", "ours / advancing front", 2)]  # fmt: skip
@@ -48,15 +45,13 @@ def find_peers(context, labels=PEERS):
 
 def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60.0):
     """A row for each method on one cloud, and its mesh if it made one; adds the parameters of the peers."""
-    methods = {OURS: None, **{label: program for label, program in peers.items() if program}}
-    meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
-    commands = [
-        [program, PEERS[label][1], cloud.points, mesh] if program
-        else [context.programs.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options]
-        for (label, program), mesh in zip(methods.items(), meshes)
-    ]  # fmt: skip
+    programs = {OURS: context.programs.reconstruction, **{label: found for label, found in peers.items() if found}}
+    meshes = [context.work / f"compare_{index}.ply" for index in range(len(programs))]
+    commands = [[program, PEERS[label][1], cloud.points, mesh] if label != OURS
+                else [program, cloud.points, mesh, "-quiet", "-json", "-", *options]
+                for (label, program), mesh in zip(programs.items(), meshes)]  # fmt: skip
     compared = []
-    for label, mesh, done in zip(methods, meshes, in_turn(commands, repeats, timeout)):
+    for label, mesh, done in zip(programs, meshes, in_turn(commands, repeats, timeout)):
         row, problem = {"model": cloud.name, "method": label}, done[-1].problem
         compared.append((row, None if problem else mesh))
         if problem and (context.quick or label == OURS):
@@ -65,8 +60,7 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
             row["failure"] = problem
             continue
         output = done[-1].output
-        # Libraries print, too.
-        told = json.loads(output if label == OURS else output.splitlines()[-1])
+        told = json.loads(output if label == OURS else output.splitlines()[-1])  # libraries print, too
         row.update(seconds=median_seconds(done), megabytes=told["peak_memory_bytes"] / 1e6)
         if label != OURS:
             parameters[label] = {"method": label, "library": told["library"], "parameters": told["parameters"]}
@@ -84,8 +78,8 @@ def summarize(rows):
         entry = {"method": method, "clouds": len(own), "spheres": len(good),
                  "clean": sum(row["intersections"] == 0 for row in good)}  # fmt: skip
         for key in ("rms", "hausdorff", "seconds", "megabytes"):
-            ratios = [row[key] / ours[row["model"]][key] for row in own
-                      if row.get(key) and ours[row["model"]].get(key)]  # fmt: skip
+            pairs = [(row.get(key), ours[row["model"]].get(key)) for row in own]
+            ratios = [one / other for one, other in pairs if one and other]
             entry[key] = statistics.median(ratios) if ratios else None
         edges = [row["edges"] for row in own if row.get("edges") is not None]
         entry["edges"] = statistics.mean(edges) if edges else None
@@ -95,20 +89,16 @@ def summarize(rows):
 
 def race(context, clouds):
     """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
-    peer = find_peers(context).get("CGAL advancing front")
+    peer, mesh = find_peers(context).get("CGAL advancing front"), context.work / "race.ply"
     rows = []
-    mesh = context.work / "race.ply"
     for cloud in clouds:
         ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
-        commands = [ours, [*ours, "-threads", "1"]]
-        if peer:
-            commands.append([peer, "advancing_front", cloud.points, mesh])
-        runs = in_turn(commands, context.choose(1, 5), long_run=4.0)
-        seconds = [median_seconds(done) for done in runs]
-        row = {"model": cloud.name, "ours": seconds[0], "single": seconds[1],
-               "gain": seconds[1] / seconds[0]}  # fmt: skip
-        if peer:
-            row.update(peer=seconds[2], ratio=seconds[0] / seconds[2])
+        others = [[peer, "advancing_front", cloud.points, mesh]] if peer else []
+        runs = in_turn([ours, [*ours, "-threads", "1"], *others], context.choose(1, 5), long_run=4.0)
+        all_threads, single, *of_peer = map(median_seconds, runs)
+        row = {"model": cloud.name, "ours": all_threads, "single": single, "gain": single / all_threads}
+        for seconds in of_peer:
+            row.update(peer=seconds, ratio=all_threads / seconds)
         rows.append(row)
     context.report.table("race", RACE, rows)
 
@@ -131,9 +121,8 @@ def section(context):
         report.text(f"### {title}" if clouds else "")
         for cloud in clouds:
             context.say(f"{name}: {cloud.name}")
-            rows += [row for row, _ in compare(
-                context, cloud, peers if cloud.name in with_peers else {}, parameters,
-                repeats=context.choose(1, 3))]  # fmt: skip
+            used = peers if cloud.name in with_peers else {}
+            rows += [row for row, _ in compare(context, cloud, used, parameters, repeats=context.choose(1, 3))]
         report.table(f"{name}_summary", SUMMARY, summarize(rows))
         report.table(name, QUALITY, rows)
     context.say("in turn with the fastest peer")

@@ -12,9 +12,8 @@ from .programs import Cloud, Failure
 
 PEERS = ("PCL Poisson", "PCL greedy projection", "Open3D ball pivoting")
 COLUMNS = [("cloud", "cloud"), ("method", "method"), ("triangles", "triangles"), ("boundary", "boundary edges"),
-           ("crowded", "edges of three or more triangles"),
-           ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
-           ("used", "points used [%]", 1), ("seconds", "time [s]", 1),
+           ("crowded", "edges of three or more triangles"), ("sphere", "closed, manifold, genus 0"),
+           ("intersections", "self-intersections"), ("used", "points used [%]", 1), ("seconds", "time [s]", 1),
            ("failure", "remark")]  # fmt: skip
 CAPTION = ("{method}: {triangles:,} triangles\n"
            "{boundary:,} boundary edges, {intersections:,} self-intersections")  # fmt: skip

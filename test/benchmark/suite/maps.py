@@ -4,8 +4,8 @@ import json
 
 from .programs import flat, require, stage_seconds
 
-SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake",
-          "plate", "torus", "bowl", "pair")  # fmt: skip
+SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake", "plate", "torus",
+          "bowl", "pair")  # fmt: skip
 SPHERE = "-topology", "sphere"  # all clouds have a map
 # Points of a geodesic sphere of frequency 32 or 128, and the side of an image of about as many pixels.
 GRIDS = (10242, 101), (163842, 405)
@@ -21,10 +21,9 @@ MAPS = [("model", "cloud"), ("vertices", "vertices"),
         ("mean_angle_difference_degrees", "angles off by [deg]", 1), ("stretch_efficiency", "stretch efficiency", 3),
         ("seconds", "time [s]", 2), ("ratio", "of the meshing", 1)]  # fmt: skip
 REMESHED = [("model", "cloud"), ("made", "remeshed as"), ("vertices", "points"),
-            ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
-            ("rms", "RMS [%]", 4), ("hausdorff", "Hausdorff [%]", 3),
-            ("mesh_rms", "RMS of the mesh [%]", 4), ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3),
-            ("seconds", "time [s]", 1)]  # fmt: skip
+            ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"), ("rms", "RMS [%]", 4),
+            ("hausdorff", "Hausdorff [%]", 3), ("mesh_rms", "RMS of the mesh [%]", 4),
+            ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3), ("seconds", "time [s]", 1)]  # fmt: skip
 
 
 def _remesh(context, *words):
@@ -62,16 +61,15 @@ def section(context):
         triangle's fraction of the area on the sphere to its fraction in space; angle distortion is the ratio of the
         singular values. Both are weighted by area and are 1 without distortion. *Angles off by*: mean absolute
         difference of the angles at corners. Stretch efficiency: Praun and Hoppe 2003.""")
-    generated = [programs.scan(name, truth=False) for name in context.choose(
-        ("animal_2000",), [f"{shape}_10000" for shape in SHAPES])]  # fmt: skip
+    names = context.choose(("animal_2000",), [f"{shape}_10000" for shape in SHAPES])
+    generated = [programs.scan(name, truth=False) for name in names]
     for name, clouds in (("maps", context.models), ("maps_generated", generated)):
         rows = []
         for cloud in clouds:
             context.say(f"map: {cloud.name}")
             rows.append(_map_row(cloud, _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]))
         report.table(name, MAPS, rows)
-    by_size = sorted((cloud for cloud in context.models if cloud.truth),
-                     key=lambda cloud: cloud.points.stat().st_size)  # fmt: skip
+    by_size = sorted((one for one in context.models if one.truth), key=lambda one: one.points.stat().st_size)
     # The smallest, one in the middle, the largest: each takes ten seconds or more.
     half = len(by_size) // 2
     chosen = dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:])

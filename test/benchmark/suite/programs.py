@@ -1,5 +1,6 @@
 """Runs the project's tools, the referee and the peers, and measures their time from outside."""
 
+import collections
 import dataclasses
 import json
 import pathlib
@@ -32,10 +33,9 @@ def run(command, timeout=None):
                               capture_output=True, timeout=timeout, check=False)  # fmt: skip
     except subprocess.TimeoutExpired:
         return Run(time.monotonic() - start, f"not done after {timeout:.0f} s")
-    problem = ""
-    if done.returncode not in (0, NOT_USABLE):
-        problem = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0]
-    return Run(time.monotonic() - start, problem, done.stdout)
+    seconds, is_done = time.monotonic() - start, done.returncode in (0, NOT_USABLE)
+    problem = "" if is_done else (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0]
+    return Run(seconds, problem, done.stdout)
 
 
 def require(command):
@@ -66,9 +66,9 @@ def median_seconds(runs):
 
 def stage_seconds(report):
     """Seconds of each stage in a report of a tool."""
-    seconds = {}
+    seconds = collections.Counter()
     for stage in report["stages"]:
-        seconds[stage["name"]] = seconds.get(stage["name"], 0.0) + stage["seconds"]
+        seconds[stage["name"]] += stage["seconds"]
     return seconds
 
 
@@ -100,18 +100,15 @@ class Programs:
 
     def find(self, name, required=True):
         path = self.folder / name
-        if path.is_file():
-            return path
-        if required:
+        if required and not path.is_file():
             raise Failure(f"there is no program '{path}'", "run tools/benchmark.sh, which builds it")
-        return None
+        return path if path.is_file() else None
 
     def scan(self, name, noise=None, truth=True):
         """A generated scan, by SHAPE_POINTS or the name of a preset; made once."""
         shape, _, points = name.partition("_")
         name = f"{name}_noise_{noise}" if noise else name
-        cloud = Cloud(name, self.work / f"{name}.ply",
-                      self.work / f"{shape}_truth.ply" if truth else None)  # fmt: skip
+        cloud = Cloud(name, self.work / f"{name}.ply", self.work / f"{shape}_truth.ply" if truth else None)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
             command = [self.find("pcl_spherical_param_scan"), shape, cloud.points]
             command += ["-points", points] if points else []

@@ -8,34 +8,31 @@ import time
 from .machine import memory
 from .programs import stage_seconds
 
-# What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and
-# steps of some ten arithmetic operations with a comparison (a distance, an orientation, the side of
-# a bisector). Counted by hand, for a mesh of 2 triangles and a graph of 6 neighbours a point.
+# What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and steps of some ten
+# arithmetic operations with a comparison (a distance, an orientation, the side of a bisector). Counted by hand, for a
+# mesh of 2 triangles and a graph of 6 neighbours a point.
 LEAST = {
     "read": (12 + 16, 0, "12 bytes in, 16 out"),
-    "neighbors": (6 * 2 * 16 + 14 * 2 * 12, 70, "6 passes of a radix sort, 14 levels of a k-d tree, "
-                  "some 70 distances for 12 neighbours"),
-    "graph": (13 * 4 + 6 * 12, 110, "the plane through 10 points, 11 bisectors against 6 corners, "
-              "both ends of 6 edges"),
-    "embedding": (10 * (6 * 44 + 64) + 400, 60, "10 sweeps over 6 edges (44 bytes each) and the "
-                  "point; a hierarchy of a third more points"),
+    "neighbors": (6 * 2 * 16 + 14 * 2 * 12, 70,
+                  "6 passes of a radix sort, 14 levels of a k-d tree, some 70 distances for 12 neighbours"),
+    "graph": (13 * 4 + 6 * 12, 110,
+              "the plane through 10 points, 11 bisectors against 6 corners, both ends of 6 edges"),
+    "embedding": (10 * (6 * 44 + 64) + 400, 60,
+                  "10 sweeps over 6 edges (44 bytes each) and the point; a hierarchy of a third more points"),
     "triangulation": (2 * 24 + 32, 25, "one search, 3 flips with the circles that ask for them"),
-    "optimization": (6 * 24 + 2 * 64, 152, "3 flips tried, 2 normals, "
-                     "the triangles near 2 others"),
-    "quality": (6 * 12 + 2 * 24, 40, "the edges twice, the 2-ring of the graph for edges outside it, "
-              "2 volumes"),
+    "optimization": (6 * 24 + 2 * 64, 152, "3 flips tried, 2 normals, the triangles near 2 others"),
+    "quality": (6 * 12 + 2 * 24, 40, "the edges twice, the 2-ring of the graph for edges outside it, 2 volumes"),
     "write": (12 + 2 * 13, 0, "12 bytes a point, 13 a triangle"),
 }  # fmt: skip
-STAGES = tuple(LEAST)
 STEP = 1.0  # [ns] of one core of some 3 GHz
 BYTES_A_POINT = 1500  # more than the product takes: what does not fit is not tried
 
 SCALING = [("points", "points"), ("seconds", "time [s]", 2), ("throughput", "points a second", 0),
            ("unit", "time / (n log2 n) [ns]", 0), ("bytes", "peak memory [bytes a point]", 0),
            ("intersections", "self-intersections")]  # fmt: skip
-BUDGET = [("stage", "stage"), ("one", "one thread [ns a point]", 0),
-          ("all", "all threads [ns a point]", 0), ("least", "least, one thread [ns a point]", 0),
-          ("times", "one thread / least", 1), ("what", "what each point needs")]  # fmt: skip
+BUDGET = [("stage", "stage"), ("one", "one thread [ns a point]", 0), ("all", "all threads [ns a point]", 0),
+          ("least", "least, one thread [ns a point]", 0), ("times", "one thread / least", 1),
+          ("what", "what each point needs")]  # fmt: skip
 
 
 def _measure(context, cloud, repeats, threads=None):
@@ -48,7 +45,7 @@ def _measure(context, cloud, repeats, threads=None):
         stages.append(stage_seconds(report))
     return {"points": report["vertices"], "seconds": statistics.median(processes),
             "peak": report["peak_memory_bytes"], "intersections": report["self_intersections"],
-            **{s: statistics.median(run.get(s, 0.0) for run in stages) for s in STAGES}}  # fmt: skip
+            **{s: statistics.median(run.get(s, 0.0) for run in stages) for s in LEAST}}  # fmt: skip
 
 
 def growth(context):
@@ -75,8 +72,7 @@ def growth(context):
 
 def _bandwidth():
     """Bytes that one core copies in a nanosecond, read and written: the best of some copies."""
-    source = bytearray(1 << 27)
-    best = math.inf
+    source, best = bytearray(1 << 27), math.inf
     for _ in range(5):
         begin = time.perf_counter()
         copy = bytes(source)
@@ -88,15 +84,14 @@ def _bandwidth():
 def budget(context):
     """What each stage takes, beside the least that it could take."""
     cloud = context.programs.scan(context.choose("head_10000", "igea"), truth=False)
-    repeats = context.choose(1, 5)
-    single, full = (_measure(context, cloud, repeats, threads) for threads in (1, len(os.sched_getaffinity(0))))
+    threads = len(os.sched_getaffinity(0))
+    single, full = (_measure(context, cloud, context.choose(1, 5), count) for count in (1, threads))
     bandwidth = _bandwidth()
     rows = []
     for stage, (moved, steps, what) in LEAST.items():
         least = moved / bandwidth + STEP * steps
         one, every = (1e9 * row[stage] / row["points"] for row in (single, full))
-        rows.append({"stage": stage, "one": one, "all": every, "least": least,
-                     "times": one / least, "what": what})  # fmt: skip
+        rows.append({"stage": stage, "one": one, "all": every, "least": least, "times": one / least, "what": what})
     context.report.text(f"""
         ### Budget of the stages
 
