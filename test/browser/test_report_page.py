@@ -9,7 +9,6 @@ gets the pictures.
 import json
 import pathlib
 import sys
-import tempfile
 import unittest
 
 from selenium import webdriver
@@ -31,11 +30,10 @@ PICTURES = """
     const all = canvas.getBoundingClientRect();
     return Object.fromEntries(arguments[0].map((name) => {
       const r = document.getElementById('view-' + name).getBoundingClientRect();
-      const pixels = new Uint32Array(context.getImageData(
-        r.left - all.left, r.top - all.top, r.width, r.height).data.buffer);
-      const covered = pixels.filter((pixel) => pixel !== 0).length / pixels.length;
-      return [name, { hash: pixels.reduce((hash, x) => (Math.imul(hash, 31) + x) | 0, 7),
-                      colors: new Set(pixels).size, covered }];
+      const image = context.getImageData(r.left - all.left, r.top - all.top, r.width, r.height);
+      const pixels = new Uint32Array(image.data.buffer);
+      return [name, { hash: pixels.reduce((hash, x) => (Math.imul(hash, 31) + x) | 0, 7), colors: new Set(pixels).size,
+                      covered: pixels.filter((pixel) => pixel !== 0).length / pixels.length }];
     }));"""
 
 # The view of the mesh after a change of its points and of where the input's origin is, and the area of its triangles
@@ -59,15 +57,13 @@ FIRST_VIEW = """
 
 
 class Browser(webdriver.Chrome):
-    """Chromium without a window, and with a profile of its own."""
+    """Chromium without a window; chromedriver gives it a profile of its own."""
 
     def __init__(self, *options):
-        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         settings = webdriver.ChromeOptions()
         settings.binary_location = "/usr/bin/chromium"
-        for option in ("--headless", "--no-sandbox", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
-                       "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                       "--window-size=1300,1300", f"--user-data-dir={self.profile.name}", *options):
+        for option in ("--headless", "--no-sandbox", "--disable-dev-shm-usage", "--disable-component-update",
+                       "--window-size=1300,1300", *options):  # fmt: skip
             settings.add_argument(option)
         settings.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         super().__init__(service=webdriver.chrome.service.Service("/usr/bin/chromedriver"), options=settings)
@@ -75,12 +71,8 @@ class Browser(webdriver.Chrome):
     def open(self, page):
         """Opens a page. Returns the state that it comes to."""
         self.get(page.as_uri())
-        return WebDriverWait(self, 120).until(
-            lambda _: self.execute_script("return document.documentElement.dataset.report"))
-
-    def quit(self):
-        super().quit()
-        self.profile.cleanup()
+        state = "return document.documentElement.dataset.report"
+        return WebDriverWait(self, 120).until(lambda _: self.execute_script(state))
 
 
 class ReportPage(unittest.TestCase):
