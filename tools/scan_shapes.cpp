@@ -3,6 +3,7 @@
 #include "neighbor_search.h"
 #include "parallel.h"
 #include "sample_elimination.h"
+#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
@@ -129,6 +130,13 @@ Distance star() {
       for (const Vector3d& tip : {Vector3d(0.0, a, b), Vector3d(b, 0.0, a), Vector3d(a, b, 0.0)})
         parts.push_back({cone(origin, 0.14, 0.53 * tip.normalized(), 0.013), 0.03});
   return body(parts);
+}
+
+const Shape& findShape(const std::string& name) {
+  for (const Shape& shape : allShapes())
+    if (shape.name == name)
+      return shape;
+  throw InvalidInput("there is no shape '" + name + "'; take one of allShapes()");
 }
 
 Vector3d gradientAt(const Vector3d& p, const Distance& distance) {
@@ -284,19 +292,12 @@ const std::vector<Shape>& allShapes() {
   return shapes;
 }
 
-const Shape* findShape(const std::string& name) {
-  const auto& shapes = allShapes();
-  const auto found = std::find_if(shapes.begin(), shapes.end(),
-                                  [&](const Shape& shape) { return shape.name == name; });
-  return found == shapes.end() ? nullptr : &*found;
-}
-
 // Surface nets (Gibson 1998, "Constrained elastic surface nets"): a vertex in each cube of a
 // lattice that the surface cuts, and two triangles around each edge that it cuts. The mesh is not
 // manifold if the surface passes a cube twice. The lattice lies so that this does not happen at 256
 // cells, which the tests check for every shape.
 TruthMesh referenceMesh(const std::string& name, int cells) {
-  const Shape& shape = *findShape(name);
+  const Shape& shape = findShape(name);
   const double step = 1.28 / cells;
   const auto position = [&](const Vector3d& node) -> Vector3d {
     return step * (node + Vector3d(0.27, 0.41, 0.13)).array() - 0.64;
@@ -385,7 +386,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
 
 Scan generateScan(const ScanOptions& options) {
   const TruthMesh mesh = referenceMesh(options.shape, 128);
-  const auto corner = [&](Eigen::Index t, int k) {
+  const auto corner = [&](Eigen::Index t, int k) -> Vector3d {
     return mesh.vertices.col(mesh.triangles(k, t));
   };
   Eigen::VectorXd areas(mesh.triangles.cols());
@@ -412,7 +413,7 @@ Scan generateScan(const ScanOptions& options) {
   const std::vector<Index> kept = internal::eliminateSamples(
       points, Positions::Zero(3, points.cols()), options.points, areas.sum(), 0);
 
-  const Distance& distance = findShape(options.shape)->distance;
+  const Distance& distance = findShape(options.shape).distance;
   Scan scan = {Positions(3, kept.size()), Positions(3, kept.size())};
   forEach(kept.size(), [&](std::size_t i) {
     const Vector3d p = project(points.col(kept[i]), distance);

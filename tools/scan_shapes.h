@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+/// Parts of the command line tools that do not belong to the library.
 namespace spherical_param::tools {
 
 /// Negative inside; near the surface, about the signed distance to it.
@@ -23,9 +24,6 @@ struct Shape {
 };
 
 const std::vector<Shape>& allShapes();
-
-/// By its name; null if there is no such shape.
-const Shape* findShape(const std::string& name);
 
 inline constexpr std::size_t kMaxScanPoints = 10'000'000;
 
@@ -44,7 +42,7 @@ struct Scan {
 };
 
 /// Points spread evenly over a shape, at random (blue noise). Scans that differ in their noise only
-/// move the same points.
+/// move the same points. \throw InvalidInput if there is no such shape.
 Scan generateScan(const ScanOptions& options);
 
 /// The surface a scan is taken from.
@@ -54,7 +52,7 @@ struct TruthMesh {
 };
 
 /// Triangulates a shape, with its handles, pieces and openings. With 256 cells, the mesh is
-/// manifold and oriented, with a vertex about every 1/200 unit.
+/// manifold and oriented, with a vertex about every 1/200 unit. \throw InvalidInput
 ///
 /// \param cells of a lattice along each axis: 128 or 256.
 TruthMesh referenceMesh(const std::string& shape, int cells = 256);

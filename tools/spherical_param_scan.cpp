@@ -9,6 +9,7 @@
 #include "common/text.h"
 #include "scan_shapes.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -89,7 +90,8 @@ void run(const CommandLine& command_line, Settings& settings) {
   options.shape = lowerCase(name);
   if (const auto preset = presets.find(options.shape); preset != presets.end())
     std::tie(options.shape, options.points) = preset->second;
-  if (findShape(options.shape) == nullptr)
+  if (std::none_of(allShapes().begin(), allShapes().end(),
+                   [&](const Shape& shape) { return shape.name == options.shape; }))
     throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + toolText().name + " -list' for the shapes");
   command_line.apply(optionsOf(settings));
