@@ -82,19 +82,23 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
 }
 
-void run(const CommandLine& command_line, Settings& settings) {
-  if (command_line.has("list"))
-    return printAll(listText());
-  const auto [name, output] = shapeAndOutput(command_line.others());
-  ScanOptions& options = settings.scan;
-  options.shape = lowerCase(name);
-  if (const auto preset = presets.find(options.shape); preset != presets.end())
-    std::tie(options.shape, options.points) = preset->second;
+void parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
+  ScanOptions& scan = settings.scan;
+  scan.shape = lowerCase(name);
+  if (const auto preset = presets.find(scan.shape); preset != presets.end())
+    std::tie(scan.shape, scan.points) = preset->second;
   if (std::none_of(allShapes().begin(), allShapes().end(),
-                   [&](const Shape& shape) { return shape.name == options.shape; }))
+                   [&](const Shape& shape) { return shape.name == scan.shape; }))
     throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + toolText().name + " -list' for the shapes");
   command_line.apply(optionsOf(settings));
+}
+
+void run(const CommandLine& command_line, Settings& settings) {
+  if (command_line.has("list"))
+    return printAll(listText());
+  const auto [shape, output] = shapeAndOutput(command_line.others());
+  parse(shape, command_line, settings);
   std::vector<std::string> outputs = {output};
   std::vector<FileFormat> formats = {requireFormat(output, FileUse::WriteCloud)};
   if (!settings.truth.empty()) {
@@ -110,19 +114,19 @@ void run(const CommandLine& command_line, Settings& settings) {
     writeMesh(file, MeshView(data, triangles), format, Encoding::Binary);
     file.finish();
   };
-  const Scan scan = generateScan(options);
+  const Scan scan = generateScan(settings.scan);
   PointData cloud;
   cloud.points = toPoints(scan.points);
   if (settings.normals)
     cloud.normals = toNormals(scan.normals);
   write(cloud, {});
   if (!settings.truth.empty()) {
-    const TruthMesh truth = referenceMesh(options.shape);
+    const TruthMesh truth = referenceMesh(settings.scan.shape);
     PointData vertices;
     vertices.points = toPoints(truth.vertices);
     write(vertices, truth.triangles);
   }
-  printAll(std::to_string(options.points) + " points written to " + oneLine(output) + "\n");
+  printAll(std::to_string(settings.scan.points) + " points written to " + oneLine(output) + "\n");
   for (OutputFile& file : files)
     file.commit();
 }
