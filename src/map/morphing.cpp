@@ -170,7 +170,7 @@ double inverseArea(const SphereSurface& surface) {
 /// are right, as each face is flat in both. Leaves out the faces in openings.
 Triangles triangulateFaces(const internal::SphereOverlay& overlay, const SphereSurface& first,
                            const SphereSurface& second, const MorphResult& morph) {
-  std::vector<std::array<Index, 3>> triangles;
+  std::vector<Index> corners;
   Indexed<Index> face;
   const auto squared_length = [&](Index i, Index j) {
     return (morph.first.col(i) - morph.first.col(j)).squaredNorm() * inverseArea(first) +
@@ -191,12 +191,12 @@ Triangles triangulateFaces(const internal::SphereOverlay& overlay, const SphereS
           ear = i;
         }
       }
-      triangles.push_back({face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n]});
+      corners.insert(corners.end(), {face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n]});
       face.erase(face.begin() + ear);
     }
-    triangles.push_back({face[0], face[1], face[2]});
+    corners.insert(corners.end(), face.begin(), face.end());
   }
-  return Eigen::Map<const Triangles>(triangles.front().data(), 3, internal::indexCount(triangles));
+  return Eigen::Map<const Triangles>(corners.data(), 3, internal::indexCount(corners) / 3);
 }
 
 /// A geodesic sphere with vertices at the places of pairs.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -164,6 +165,32 @@ TEST(Caps, AMorphIsOpenWhereEitherSurfaceIs) {
             1e-9);
       }
     }
+}
+
+TEST(Caps, AMorphOfSurfacesThatShareNoDirectionIsEmpty) {
+  const auto cap_around = [](const Vector3d& pole) {
+    Mapped mesh = test::withOpenings(test::bumpy(test::spiralSphere(300)), -pole, 1.5);
+    // As seen from a point of the opening: less than half of the sphere.
+    for (Positions* of : {&mesh.sphere, &mesh.caps})
+      *of = (of->colwise() + 0.6 * pole).colwise().normalized();
+    return mesh.surface();
+  };
+  const SphereSurface upper = cap_around(Vector3d::UnitZ());
+  const SphereSurface lower = cap_around(-Vector3d::UnitZ());
+  MorphOptions options;
+  options.align = false;
+  options.samples = 500;
+  for (const MorphConnectivity connectivity :
+       {MorphConnectivity::AllVertices, MorphConnectivity::Resampled}) {
+    options.connectivity = connectivity;
+    const MorphResult morph = morphSurfaces(upper, lower, options);
+    EXPECT_EQ(morph.triangles.cols(), 0);
+    for (const Positions* positions : {&morph.first, &morph.second, &morph.sphere})
+      EXPECT_EQ(positions->cols(), 0);
+    EXPECT_TRUE(morph.first_places.empty() && morph.second_places.empty());
+    EXPECT_TRUE(std::isfinite(morph.alignment_error));
+    EXPECT_EQ(inBetween(morph, 0.5).cols(), 0);
+  }
 }
 
 }  // namespace
