@@ -278,27 +278,6 @@ void morphOnOverlay(const SphereSurface& first, const SphereSurface& second,
   }
 }
 
-/// Sets the partners of the vertices whose landmarks arrived, and adds the other pairs to the
-/// impossible ones. \return the places of the landmarks that arrived
-std::vector<Vector3d> honouredPairs(const PairChoice& choice,
-                                    const std::vector<internal::Landmark>& landmarks,
-                                    const internal::SphereWarp& warp, Indexed<Index>& partner,
-                                    std::vector<ImpossiblePair>& impossible) {
-  std::vector<Vector3d> places;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    if (!warp.reasons[i].empty()) {
-      for (const std::size_t number : choice.numbers[i])
-        impossible.push_back({number, warp.reasons[i]});
-      continue;
-    }
-    partner[choice.pairs[i].second] = choice.pairs[i].first;
-    places.push_back(landmarks[i].target);
-  }
-  std::sort(impossible.begin(), impossible.end(),
-            [](const auto& one, const auto& other) { return one.pair < other.pair; });
-  return places;
-}
-
 }  // namespace
 
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
@@ -323,18 +302,27 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     sphere = (morph.rotation.transpose() * sphere).colwise().normalized();
   std::vector<internal::Landmark> landmarks;
   for (const PointPair& pair : choice.pairs)
-    landmarks.push_back({pair.second, first.sphere().col(pair.first)});
-  internal::SphereWarp warp =
+    landmarks.push_back({pair.second, first.sphere().col(pair.first), {}});
+  const internal::SphereWarp warp =
       internal::moveLandmarks(sphere, second.triangles(), landmarks, options.threads, report);
-  if (internal::countFlipped(warp.sphere, second.triangles(), options.threads) > 0)
+  if (warp.is_flipped)
     throw ComputeError("morphSurfaces: the second map has triangles that rounding flips when it "
                        "is rotated; use a map of less distortion, or align = false");
-  sphere = std::move(warp.sphere);
   morph.worst_pair = warp.worst;
 
   Indexed<Index> partner(internal::columnCount(sphere), -1);
-  const std::vector<Vector3d> places =
-      honouredPairs(choice, landmarks, warp, partner, morph.impossible);
+  std::vector<Vector3d> places;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (landmarks[i].fault.empty()) {
+      partner[choice.pairs[i].second] = choice.pairs[i].first;
+      places.push_back(landmarks[i].target);
+      continue;
+    }
+    for (const std::size_t number : choice.numbers[i])
+      morph.impossible.push_back({number, landmarks[i].fault});
+  }
+  std::sort(morph.impossible.begin(), morph.impossible.end(),
+            [](const auto& one, const auto& other) { return one.pair < other.pair; });
 
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);

@@ -36,16 +36,18 @@ constexpr int kKernelSteps = 40;
 
 /// The way of a landmark: an arc.
 struct Path {
+  Landmark* landmark;
   Vector3d from, to;
   Vector3d along;  ///< the direction in which it begins
   double angle;    ///< [rad]
 
-  Path(const Vector3d& begin, const Vector3d& end) : from(begin), to(end) {
-    const Vector3d cross = begin.cross(end);
-    angle = std::atan2(cross.norm(), begin.dot(end));
+  Path(const Positions& sphere, Landmark& of)
+      : landmark(&of), from(sphere.col(of.vertex)), to(of.target) {
+    const Vector3d cross = from.cross(to);
+    angle = std::atan2(cross.norm(), from.dot(to));
     // Between antipodes any arc will do.
-    along = cross.norm() > 1e-12 ? Vector3d(cross.cross(begin).normalized())
-                                 : Vector3d(tangentBasis(begin).col(0));
+    along = cross.norm() > 1e-12 ? Vector3d(cross.cross(from).normalized())
+                                 : Vector3d(tangentBasis(from).col(0));
   }
 
   Vector3d at(double t) const {
@@ -209,13 +211,11 @@ private:
 /// The motion of some landmarks, and of the sphere with them.
 class Motion {
 public:
-  /// \param vertices of the landmarks.
-  Motion(Positions sphere, const std::vector<Path>& paths, const std::vector<Index>& vertices,
-         const Untangler& untangler, int threads)
-      : sphere_(std::move(sphere)), paths_(paths), vertices_(vertices), untangler_(untangler),
-        threads_(threads), is_fixed_(columnCount(sphere_), 0), support_(supportOf(paths)) {
-    for (const Index v : vertices)
-      is_fixed_[v] = 1;
+  Motion(Positions sphere, const std::vector<Path>& paths, const Untangler& untangler, int threads)
+      : sphere_(std::move(sphere)), paths_(paths), untangler_(untangler), threads_(threads),
+        is_fixed_(columnCount(sphere_), 0), support_(supportOf(paths)) {
+    for (const Path& path : paths)
+      is_fixed_[path.landmark->vertex] = 1;
   }
 
   /// Moves the sphere until all landmarks are at the ends of their paths.
@@ -261,14 +261,14 @@ private:
 
   /// One step of all vertices, to a time on the paths.
   void carry(double goal) {
-    const Eigen::Index n = indexCount(vertices_);
-    const Positions places = columnsOf(sphere_, vertices_);
-    Positions ends(3, n);
+    const Index n = indexCount(paths_);
+    Positions places(3, n);
     Positions values(3, n);
     for (Index i = 0; i < n; ++i) {
-      const Vector3d place = places.col(i);
-      ends.col(i) = entry(paths_, i).at(goal);
-      const Vector3d way = ends.col(i) / std::max(0.5, ends.col(i).dot(place)) - place;
+      const Vector3d place = sphere_.col(entry(paths_, i).landmark->vertex);
+      const Vector3d end = entry(paths_, i).at(goal);
+      const Vector3d way = end / std::max(0.5, end.dot(place)) - place;
+      places.col(i) = place;
       values.col(i) = way - place.dot(way) * place;
     }
     const Field field(places, values, support_);
@@ -278,17 +278,17 @@ private:
           const Vector3d x = sphere_.col(v);
           sphere_.col(v) = (x + field.at(x)).normalized();
         },
-        vertices_.size());
-    for (Index i = 0; i < n; ++i) {
-      const Index v = entry(vertices_, i);
-      worst_ = std::max(worst_, (sphere_.col(v) - ends.col(i)).norm());
-      sphere_.col(v) = ends.col(i);
+        paths_.size());
+    for (const Path& path : paths_) {
+      auto place = sphere_.col(path.landmark->vertex);
+      const Vector3d end = path.at(goal);
+      worst_ = std::max(worst_, (place - end).norm());
+      place = end;
     }
   }
 
   Positions sphere_;
   const std::vector<Path>& paths_;
-  const std::vector<Index>& vertices_;
   const Untangler& untangler_;
   int threads_;
   Indexed<char> is_fixed_;
@@ -298,30 +298,20 @@ private:
 
 }  // namespace
 
-Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
-  return sumOfIndices(columnCount(triangles), threads, Index{0},
-                      [&](Index t) { return isFlipped(sphere, triangles, t) ? 1 : 0; });
-}
-
-SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
-                         const std::vector<Landmark>& landmarks, int threads,
+SphereWarp moveLandmarks(Positions& sphere, const Triangles& triangles,
+                         std::vector<Landmark>& landmarks, int threads,
                          const FractionReport& report) {
-  SphereWarp warp{sphere, std::vector<std::string>(landmarks.size())};
   const Untangler untangler(triangles, columnCount(sphere), threads);
-  untangler.untangle(warp.sphere, Indexed<char>(columnCount(sphere), 0));
+  SphereWarp warp;
+  warp.is_flipped = untangler.untangle(sphere, Indexed<char>(columnCount(sphere), 0)).has_value();
   std::vector<Path> paths;
-  std::vector<Index> vertices;
-  std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    const Path path(warp.sphere.col(landmarks[i].vertex), landmarks[i].target);
+  for (Landmark& landmark : landmarks) {
+    const Path path(sphere, landmark);
     if (std::any_of(paths.begin(), paths.end(),
-                    [&](const Path& other) { return collide(path, other); })) {
-      warp.reasons[i] = "its way on the sphere crosses that of an earlier pair";
-      continue;
-    }
-    paths.push_back(path);
-    vertices.push_back(landmarks[i].vertex);
-    numbers.push_back(i);
+                    [&](const Path& other) { return collide(path, other); }))
+      landmark.fault = "its way on the sphere crosses that of an earlier pair";
+    else
+      paths.push_back(path);
   }
   double reported = 0.0;
   // A motion that begins again does not report less than before.
@@ -330,26 +320,22 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
     reportFraction(report, reported);
   };
   while (!paths.empty()) {
-    Motion motion(warp.sphere, paths, vertices, untangler, threads);
+    Motion motion(sphere, paths, untangler, threads);
     const std::optional<Index> stuck = motion.run(ascending);
     if (!stuck) {
-      warp.sphere = motion.sphere();
-      warp.worst = motion.worst();
+      sphere = motion.sphere();
+      warp = {false, motion.worst()};
       break;
     }
     // The landmark nearest to what stays flipped is in the way.
     const Vector3d place = motion.sphere().col(triangles(0, *stuck));
     const auto nearest =
-        std::min_element(paths.begin(), paths.end(),
-                         [&](const Path& one, const Path& other) {
-                           return (one.to - place).norm() < (other.to - place).norm();
-                         }) -
-        paths.begin();
-    warp.reasons[numbers[static_cast<std::size_t>(nearest)]] =
+        std::min_element(paths.begin(), paths.end(), [&](const Path& one, const Path& other) {
+          return (one.to - place).norm() < (other.to - place).norm();
+        });
+    nearest->landmark->fault =
         "no motion of the sphere was found that takes it to its place without a fold";
-    paths.erase(paths.begin() + nearest);
-    vertices.erase(vertices.begin() + nearest);
-    numbers.erase(numbers.begin() + nearest);
+    paths.erase(nearest);
   }
   reportFraction(report, 1.0);
   return warp;

@@ -12,18 +12,15 @@ namespace spherical_param::internal {
 struct Landmark {
   Index vertex = 0;
   Eigen::Vector3d target = Eigen::Vector3d::UnitX();  ///< unit vector
+  std::string fault;  ///< why it did not arrive; empty: it is just there
 };
 
-/// A mesh on the sphere after landmarks have gone to their places.
+/// What the motion of landmarks comes to.
 struct SphereWarp {
-  Positions sphere;  ///< 3 x v, unit vectors; those of landmarks that arrived are their targets
-  std::vector<std::string> reasons;  ///< of each landmark: why it did not; empty: it arrived
+  bool is_flipped = false;  ///< a triangle was flipped before, and still is
   double worst = 0.0;  ///< largest distance by which a step missed the place of a landmark, before
                        ///< that was put there [rad]
 };
-
-/// Number of triangles that are not counter-clockwise on the sphere, by an exact predicate.
-Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads);
 
 /// Moves the vertices of a mesh on the sphere, one to one, such that some come to given places.
 ///
@@ -33,10 +30,10 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// them are moved between their neighbours; a step that leaves one flipped is made shorter.
 ///
 /// \param sphere 3 x v, unit vectors; \param triangles closed, manifold, of genus 0.
-/// \param landmarks different vertices, different targets.
+/// \param landmarks different vertices, different targets; their faults are set.
 /// The same, bit by bit, for any number of threads.
-SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
-                         const std::vector<Landmark>& landmarks, int threads,
+SphereWarp moveLandmarks(Positions& sphere, const Triangles& triangles,
+                         std::vector<Landmark>& landmarks, int threads,
                          const FractionReport& report);
 
 }  // namespace spherical_param::internal
