@@ -288,12 +288,8 @@ private:
           0.0, corner.direction.dot(sphere_.col(triangles_((k + 1) % 3, triangle_))
                                         .cross(sphere_.col(triangles_((k + 2) % 3, triangle_)))));
     }
-    const double sum = vertex.weights.sum();
-    vertex.weights =
-        sum > 0.0 ? Vector3d(vertex.weights / sum) : Vector3d(Vector3d::Constant(1.0 / 3.0));
-    Vector3d point = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k)
-      point += vertex.weights[k] * sphere_.col(triangles_(k, triangle_));
+    vertex.weights = withSumOne(vertex.weights);
+    const Vector3d point = blend(sphere_, triangles_, triangle_, vertex.weights);
     result_.vertices.push_back(vertex);
     result_.points.push_back(onPlanes(point, corner.signs, planes_));
   }

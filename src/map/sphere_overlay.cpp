@@ -141,12 +141,7 @@ struct OverlaidMesh {
           std::find(v.begin(), v.end(), column) != v.end()
               ? (v[k] == column ? 1.0 : 0.0)
               : std::max(0.0, determinantOf(points, column, v[(k + 1) % 3], v[(k + 2) % 3]));
-    const double sum = location.weights.sum();
-    // Of a triangle without area to within rounding, the middle.
-    if (sum > 0.0)
-      location.weights /= sum;
-    else
-      location.weights.setConstant(1.0 / 3.0);
+    location.weights = withSumOne(location.weights);
     return location;
   }
 };

@@ -6,6 +6,7 @@
 #include "exact_predicates.h"
 #include "index_loops.h"
 #include "input_checks.h"
+#include "triangle_geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -189,10 +190,7 @@ private:
         }
         if (!is_inside)
           continue;
-        const double sum = weights.sum();
-        weights = sum > 0.0 ? Eigen::Vector3d(weights / sum)
-                            : Eigen::Vector3d(Eigen::Vector3d::Constant(1.0 / 3.0));
-        const Color painted = color(t, weights);
+        const Color painted = color(t, internal::withSumOne(weights));
         image_.covered[i] = 1;
         std::copy(painted.begin(), painted.end(), &image_.pixels[3 * i]);
       }
@@ -226,6 +224,19 @@ Color checkerColor(const Eigen::Vector3d& direction, int cells) {
   return color;
 }
 
+/// \param values of the vertices of the mesh; \param color of what they make at a pixel.
+template <typename ColorOf>
+TextureImage bake(const TextureAtlas& atlas, const Positions& values, const BakeOptions& options,
+                  const ColorOf& color) {
+  const Positions at_vertices = atCutVertices(atlas, values);
+  Painter painter(atlas, options);
+  painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
+    return color(internal::blend(at_vertices, atlas.triangles, t, weights));
+  });
+  painter.paintGutter(options.gutter);
+  return painter.take();
+}
+
 }  // namespace
 
 TextureImage bakeColors(const TextureAtlas& atlas,
@@ -236,20 +247,13 @@ TextureImage bakeColors(const TextureAtlas& atlas,
   if (!(colors.array() >= 0.0 && colors.array() <= 255.0).all())
     throw InvalidInput("bakeColors: a colour is out of range or not finite; give channels from 0 "
                        "to 255");
-  const Eigen::MatrixXd at_vertices = atCutVertices(atlas, colors);
-  Painter painter(atlas, options);
-  painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Index k = 0; k < 3; ++k)
-      sum += weights[k] * at_vertices.col(atlas.triangles(k, t));
+  return bake(atlas, colors, options, [](const Eigen::Vector3d& at_pixel) {
     Color color{};
     for (Index c = 0; c < 3; ++c)
       internal::entry(color, c) =
-          static_cast<std::uint8_t>(std::clamp(std::floor(sum[c] + 0.5), 0.0, 255.0));
+          static_cast<std::uint8_t>(std::clamp(std::floor(at_pixel[c] + 0.5), 0.0, 255.0));
     return color;
   });
-  painter.paintGutter(options.gutter);
-  return painter.take();
 }
 
 TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere, int cells,
@@ -260,16 +264,8 @@ TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere
   if (!sphere.allFinite())
     throw InvalidInput("bakeCheckerboard: a vertex on the sphere is not finite; give unit vectors");
   // In the flat triangles of the mesh: pieces of a triangle have the pattern of the whole.
-  const Eigen::MatrixXd at_vertices = atCutVertices(atlas, sphere);
-  Painter painter(atlas, options);
-  painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Eigen::Index k = 0; k < 3; ++k)
-      sum += weights[k] * at_vertices.col(atlas.triangles(k, t));
-    return checkerColor(sum, cells);
-  });
-  painter.paintGutter(options.gutter);
-  return painter.take();
+  return bake(atlas, sphere, options,
+              [cells](const Eigen::Vector3d& at_pixel) { return checkerColor(at_pixel, cells); });
 }
 
 }  // namespace spherical_param

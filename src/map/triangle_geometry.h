@@ -20,6 +20,34 @@ inline bool isOutward(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return determinantSign(a, b, c) > 0;
 }
 
+/// Whether all triangles around a vertex are outward with it at a place of the sphere; exact.
+inline bool fitsAt(const Eigen::Vector3d& place, Index v, const Positions& sphere,
+                   const Triangles& triangles, const CornerTable& corners) {
+  bool fits = true;
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    fits = fits && isOutward(place, sphere.col(triangles(nextCorner(k), t)),
+                             sphere.col(triangles(previousCorner(k), t)));
+  });
+  return fits;
+}
+
+/// What a triangle's corners have, by weights.
+template <typename Columns>
+Eigen::Vector3d blend(const Columns& columns, const Triangles& triangles, Eigen::Index t,
+                      const Eigen::Vector3d& weights) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k)
+    sum += weights[k] * columns.col(triangles(k, t));
+  return sum;
+}
+
+/// Weights of sum 1; where rounding left none, those of the middle.
+inline Eigen::Vector3d withSumOne(const Eigen::Vector3d& weights) {
+  if (weights.sum() > 0.0)
+    return weights / weights.sum();
+  return Eigen::Vector3d::Constant(1.0 / 3.0);
+}
+
 /// Whether a triangle on the sphere is clockwise or has no area there; exact.
 inline bool isFlipped(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
   return !isOutward(sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),

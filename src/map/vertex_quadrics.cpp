@@ -119,9 +119,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
 }
 
 VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights) const {
-  Vector3d linear = Vector3d::Zero();
-  for (Index k = 0; k < 3; ++k)
-    linear += weights[k] * points_.col(triangles_(k, triangle));
+  const Vector3d linear = blend(points_, triangles_, triangle, weights);
   Vector3d moved = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
   for (Index k = 0; k < 3; ++k) {
