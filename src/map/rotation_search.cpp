@@ -51,6 +51,10 @@ public:
     }
     center_ = area_ > 0.0 ? Vector3d(origin + sum / area_) : origin;
     scale_ = area_ > 0.0 ? 1.0 / std::sqrt(area_) : 1.0;
+    Positions middles(3, triangles.cols());
+    for (Index t = 0; t < middles.cols(); ++t)
+      middles.col(t) = blend(surface.sphere(), {t, Vector3d::Ones()});
+    order_ = mortonOrder(middles);
   }
 
   /// A position on the flat triangles.
@@ -61,17 +65,13 @@ public:
 
   /// Samples spread over the surface by its area: along a curve over the sphere, in equal parts.
   Indexed<Sample> samples(Index count) const {
-    Positions middles(3, surface_.triangles().cols());
-    for (Index t = 0; t < middles.cols(); ++t)
-      middles.col(t) = blend(surface_.sphere(), {t, Vector3d::Ones()});
-    const std::vector<Index> order = mortonOrder(middles);
     Indexed<Sample> samples;
     std::size_t i = 0;
     double before = 0.0;
     for (Index s = 0; s < count; ++s) {
       const double wanted = (s + 0.5) / count * area_;
-      while (i + 1 < order.size() && before + areas_[order[i]] < wanted)
-        before += areas_[order[i++]];
+      while (i + 1 < order_.size() && before + areas_[order_[i]] < wanted)
+        before += areas_[order_[i++]];
       // M. Roberts' sequence R2, folded into the triangle.
       double a = std::fmod(0.5 + 0.7548776662466927 * s, 1.0);
       double b = std::fmod(0.5 + 0.5698402909980532 * s, 1.0);
@@ -79,7 +79,7 @@ public:
         a = 1.0 - a;
         b = 1.0 - b;
       }
-      const SphereLocation location{order[i], {1.0 - a - b, a, b}};
+      const SphereLocation location{order_[i], {1.0 - a - b, a, b}};
       samples.push_back({blend(surface_.sphere(), location).normalized(), at(location)});
     }
     return samples;
@@ -87,14 +87,12 @@ public:
 
 private:
   Vector3d blend(const Positions& corners, const SphereLocation& location) const {
-    Vector3d sum = Vector3d::Zero();
-    for (Index k = 0; k < 3; ++k)
-      sum += location.weights[k] * corners.col(surface_.triangles()(k, location.triangle));
-    return sum;
+    return internal::blend(corners, surface_.triangles(), location.triangle, location.weights);
   }
 
   const SphereSurface& surface_;
   Indexed<double> areas_;
+  std::vector<Index> order_;  ///< of the triangles along a curve over the sphere
   double area_ = 0.0;
   Vector3d center_;
   double scale_;
