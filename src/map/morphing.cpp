@@ -224,8 +224,7 @@ std::vector<SphereLocation> locateAll(const Positions& directions, const Locator
                                       int threads) {
   std::vector<SphereLocation> places(internal::columnCount(directions));
   internal::forEachIndex(places.size(), threads, [&](Index i) {
-    const auto hit = locator.locate(directions.col(i));
-    internal::entry(places, i) = {hit.triangle, hit.weights};
+    internal::entry(places, i) = locator.locate(directions.col(i));
   });
   return places;
 }

@@ -73,11 +73,13 @@ FloatBox SphereLocator::boxOf(Index triangle) const {
                   (box.max().array() + margin).matrix().cast<float>());
 }
 
-SphereHit SphereLocator::locate(const Vector3d& direction) const {
+SphereLocation SphereLocator::locate(const Vector3d& direction) const {
   const Vector3d unit = unitVector(direction);
   const Vector3d exact = scaled(direction);
-  SphereHit hit;
-  Eigen::Vector3i hit_sides;
+  SphereLocation hit{-1, Vector3d::Zero()};
+  Eigen::Vector3i hit_sides = Eigen::Vector3i::Zero();
+  // Only sides and corners are in several triangles.
+  const auto is_found = [&](const FloatBox&) { return hit_sides.minCoeff() > 0; };
   const auto visit = [&](Index i) {
     const Index t = entry(order_, i);
     if (hit.triangle >= 0 && hit.triangle < t)
@@ -93,8 +95,7 @@ SphereHit SphereLocator::locate(const Vector3d& direction) const {
       hit_sides = sides;
     }
   };
-  tree_.forEachOverlapping(
-      FloatBox(unit.normalized().cast<float>()), 0, [](const FloatBox&) { return false; }, visit);
+  tree_.forEachOverlapping(FloatBox(unit.normalized().cast<float>()), 0, is_found, visit);
   if (hit.triangle >= 0)
     hit.weights = weightsIn(hit.triangle, unit, hit_sides);
   return hit;

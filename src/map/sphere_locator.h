@@ -1,17 +1,11 @@
 #pragma once
 
 #include "box_tree.h"
-#include "spherical_param/types.h"
+#include "spherical_param/map/sphere_surface.h"
 
 #include <vector>
 
 namespace spherical_param::internal {
-
-/// Where a direction meets a triangulated sphere.
-struct SphereHit {
-  Index triangle = -1;                                ///< -1: nowhere
-  Eigen::Vector3d weights = Eigen::Vector3d::Zero();  ///< barycentric, in the flat triangle
-};
 
 /// Finds the triangle of a triangulated sphere that holds a direction: by a tree of bounding boxes
 /// of the spherical triangles, then by the exact signs of the sides of their cones. Triangles whose
@@ -26,7 +20,8 @@ public:
   /// On an edge or at a corner, the triangle of lowest index among those that share it.
   ///
   /// \param direction finite, not zero, of any length.
-  SphereHit locate(const Eigen::Vector3d& direction) const;
+  /// \return of triangle -1 if the direction meets none
+  SphereLocation locate(const Eigen::Vector3d& direction) const;
 
 private:
   /// Weights of the corners of a triangle at a direction.

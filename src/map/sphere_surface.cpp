@@ -106,6 +106,15 @@ struct SphereSurface::Data {
       quadrics.emplace(points, triangles, normals, corners, thread_limit);
   }
 
+  SphereLocation locate(const Vector3d& direction) const {
+    const SphereLocation location = locator.locate(direction);
+    if (location.triangle < 0)
+      throw ComputeError(
+          "SphereSurface: no triangle holds a direction, as coordinates on the sphere are too "
+          "small for exact signs; turn the sphere a little");
+    return location;
+  }
+
   /// \param location with a triangle of the mesh.
   SurfaceSample at(const SphereLocation& location) const {
     SurfaceSample sample;
@@ -117,13 +126,11 @@ struct SphereSurface::Data {
       sample.normal = unitNormal(point.normal, location);
       return sample;
     }
-    Vector3d normal = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const Index v = triangles(k, location.triangle);
-      sample.position += location.weights[k] * points.col(v);
-      normal += location.weights[k] * normals.col(v);
-    }
-    sample.normal = unitNormal(normal, location);
+    const auto blend = [&](const Positions& columns) {
+      return internal::blend(columns, triangles, location.triangle, location.weights);
+    };
+    sample.position = blend(points);
+    sample.normal = unitNormal(blend(normals), location);
     return sample;
   }
 
@@ -206,21 +213,9 @@ bool SphereSurface::isCap(Index triangle) const {
   return triangle >= data_->mesh_triangles;
 }
 
-namespace {
-
-void requireHit(const internal::SphereHit& hit) {
-  if (hit.triangle < 0)
-    throw ComputeError("SphereSurface: no triangle holds a direction, as coordinates on the sphere "
-                       "are too small for exact signs; turn the sphere a little");
-}
-
-}  // namespace
-
 SphereLocation SphereSurface::locate(const Vector3d& direction) const {
   internal::checkDirections("SphereSurface", direction);
-  const internal::SphereHit hit = data_->locator.locate(direction);
-  requireHit(hit);
-  return {hit.triangle, hit.weights};
+  return data_->locate(direction);
 }
 
 SurfaceSample SphereSurface::evaluate(const Vector3d& direction) const {
@@ -242,17 +237,11 @@ SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
   samples.normals.resize(3, directions.cols());
   samples.locations.resize(internal::columnCount(directions));
   internal::forEachIndex(samples.locations.size(), data_->thread_limit, [&](Index i) {
-    const internal::SphereHit hit = data_->locator.locate(directions.col(i));
-    SphereLocation& location = internal::entry(samples.locations, i);
-    location = {hit.triangle, hit.weights};
-    if (hit.triangle < 0)
-      return;
-    const SurfaceSample sample = data_->at(location);
+    const SurfaceSample sample = data_->at(data_->locate(directions.col(i)));
     samples.positions.col(i) = sample.position;
     samples.normals.col(i) = sample.normal;
+    internal::entry(samples.locations, i) = sample.location;
   });
-  for (const SphereLocation& location : samples.locations)
-    requireHit({location.triangle, location.weights});
   return samples;
 }
 

@@ -15,10 +15,10 @@ TEST(SphereLocator, OutsideOfTheTrianglesIsNowhere) {
   const SphereLocator locator(sphere, triangles, 1);
   EXPECT_EQ(locator.locate({-1.0, -1.0, -1.0}).triangle, -1);
   EXPECT_EQ(locator.locate({1.0, 1.0, -1e-90}).triangle, -1);
-  const SphereHit middle = locator.locate({2.0, 2.0, 2.0});
+  const SphereLocation middle = locator.locate({2.0, 2.0, 2.0});
   EXPECT_EQ(middle.triangle, 0);
   EXPECT_LE((middle.weights - Eigen::Vector3d::Constant(1.0 / 3.0)).norm(), 1e-15);
-  const SphereHit side = locator.locate({1.0, 1.0, 0.0});
+  const SphereLocation side = locator.locate({1.0, 1.0, 0.0});
   EXPECT_EQ(side.triangle, 0);
   EXPECT_EQ(side.weights[2], 0.0);
 }
