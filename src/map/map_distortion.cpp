@@ -125,7 +125,6 @@ struct Sums {
   double in_space = 0.0;   // twice the area of those with an area
   double on_sphere = 0.0;  // the same of their flat images
   double covered = 0.0;    // area on the sphere of these
-  std::size_t counted = 0;
   Index flipped = 0;
   Index degenerate = 0;
 
@@ -133,7 +132,6 @@ struct Sums {
     in_space += other.in_space;
     on_sphere += other.on_sphere;
     covered += other.covered;
-    counted += other.counted;
     flipped += other.flipped;
     degenerate += other.degenerate;
     return *this;
@@ -164,39 +162,23 @@ struct Meshes {
   double areaOnSphere(Index t, const Sides& flat) const {
     return spherical_param::areaOnSphere(sphere.col(triangles(0, t)), flat);
   }
-  /// Calls work(block, t) for each triangle of each block.
-  template <typename Work>
-  void forEachTriangle(const Work& work) const {
-    internal::forEachBlock(internal::columnCount(triangles), threads,
-                           [&](std::size_t block, std::size_t begin, std::size_t end) {
-                             for (std::size_t t = begin; t < end; ++t)
-                               work(block, static_cast<Index>(t));
-                           });
-  }
-  std::size_t blockCount() const {
-    return (internal::columnCount(triangles) + internal::kBlockSize - 1) / internal::kBlockSize;
-  }
 };
 
-/// Sums over each block of triangles.
-std::vector<Sums> sumBlocks(const Meshes& meshes) {
-  std::vector<Sums> of_blocks(meshes.blockCount());
-  meshes.forEachTriangle([&](std::size_t block, Index t) {
-    Sums& sums = of_blocks[block];
-    const Sides solid = meshes.solid(t);
-    if (internal::isFlipped(meshes.sphere, meshes.triangles, t))
-      ++sums.flipped;
-    if (solid.isDegenerate()) {
-      ++sums.degenerate;
-      return;
-    }
-    ++sums.counted;
-    sums.in_space += solid.twice_area;
-    const Sides flat = meshes.flat(t);
-    sums.on_sphere += flat.twice_area;
-    sums.covered += meshes.areaOnSphere(t, flat);
-  });
-  return of_blocks;
+Sums sumsOf(const Meshes& meshes) {
+  return internal::accumulate(internal::columnCount(meshes.triangles), meshes.threads, Sums(),
+                              [&](Index t, Sums& sums) {
+                                const Sides solid = meshes.solid(t);
+                                if (internal::isFlipped(meshes.sphere, meshes.triangles, t))
+                                  ++sums.flipped;
+                                if (solid.isDegenerate()) {
+                                  ++sums.degenerate;
+                                  return;
+                                }
+                                sums.in_space += solid.twice_area;
+                                const Sides flat = meshes.flat(t);
+                                sums.on_sphere += flat.twice_area;
+                                sums.covered += meshes.areaOnSphere(t, flat);
+                              });
 }
 
 /// Distortions of all triangles that are not degenerate, and sums over them.
@@ -207,41 +189,35 @@ struct Distortions {
   double squared_stretch = 0.0;   ///< mean
 };
 
-Distortions distortionsOf(const Meshes& meshes, const std::vector<Sums>& of_blocks,
-                          const Sums& sums) {
-  // Where the next value of each block goes; the sums follow the order of the blocks.
-  std::vector<std::size_t> next(of_blocks.size(), 0);
-  for (std::size_t b = 1; b < of_blocks.size(); ++b)
-    next[b] = next[b - 1] + of_blocks[b - 1].counted;
-  Distortions result;
-  result.angles.resize(sums.counted);
-  result.areas.resize(sums.counted);
-  // Of the blocks: differences of angles, and the squares of stretch.
-  std::vector<std::pair<double, double>> of_block(of_blocks.size());
-  meshes.forEachTriangle([&](std::size_t block, Index t) {
-    const Sides solid = meshes.solid(t);
-    if (solid.isDegenerate())
-      return;
-    const Sides flat = meshes.flat(t);
-    const LinearMap map(solid, flat);
-    const double weight = solid.twice_area / sums.in_space;
-    const double area = meshes.areaOnSphere(t, flat) / sums.covered / weight;
-    const std::size_t k = next[block]++;
-    // Written so that 0 / 0, which is not a number, counts as unbounded.
-    result.angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
-    result.areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
-    // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
-    const double sigma_2 = map.determinant / map.sigma_1;
-    const double stretch = 0.5 * (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
-                           (sums.on_sphere / sums.in_space);
-    of_block[block].second += weight * bounded(stretch);
-    of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
-  });
-  for (const auto& [angle, square] : of_block) {
-    result.angle_difference += angle;
-    result.squared_stretch += square;
-  }
-  return result;
+Distortions distortionsOf(const Meshes& meshes, const Sums& sums) {
+  const std::size_t count = internal::columnCount(meshes.triangles);
+  constexpr Weighted none(-1.0, 0.0);
+  internal::Indexed<Weighted> angles(count, none);
+  internal::Indexed<Weighted> areas(count, none);
+  // Differences of angles, and the squares of stretch.
+  const Eigen::Array2d totals = internal::accumulate(
+      count, meshes.threads, Eigen::Array2d(0.0, 0.0), [&](Index t, Eigen::Array2d& total) {
+        const Sides solid = meshes.solid(t);
+        if (solid.isDegenerate())
+          return;
+        const Sides flat = meshes.flat(t);
+        const LinearMap map(solid, flat);
+        const double weight = solid.twice_area / sums.in_space;
+        const double area = meshes.areaOnSphere(t, flat) / sums.covered / weight;
+        // Written so that 0 / 0, which is not a number, counts as unbounded.
+        angles[t] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
+        areas[t] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
+        // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
+        const double sigma_2 = map.determinant / map.sigma_1;
+        const double stretch = 0.5 *
+                               (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
+                               (sums.on_sphere / sums.in_space);
+        total += Eigen::Array2d((solid.angles() - flat.angles()).cwiseAbs().sum(),
+                                weight * bounded(stretch));
+      });
+  for (internal::Indexed<Weighted>* values : {&angles, &areas})
+    values->erase(std::remove(values->begin(), values->end(), none), values->end());
+  return {std::move(angles), std::move(areas), totals[0], totals[1]};
 }
 
 }  // namespace
@@ -256,19 +232,15 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
     return distortion;
   const double extent = points.cwiseAbs().maxCoeff();
   const Meshes meshes{points, sphere, triangles, extent > 0.0 ? 1.0 / extent : 1.0, threads};
-  const std::vector<Sums> of_blocks = sumBlocks(meshes);
-  Sums sums;
-  for (const Sums& block : of_blocks)
-    sums += block;
+  const Sums sums = sumsOf(meshes);
   distortion.flipped_triangles = sums.flipped;
   distortion.degenerate_triangles = sums.degenerate;
-  if (sums.counted == 0)
+  Distortions distortions = distortionsOf(meshes, sums);
+  const auto counted = static_cast<double>(distortions.angles.size());
+  if (counted == 0.0)
     return distortion;
-
-  Distortions distortions = distortionsOf(meshes, of_blocks, sums);
   constexpr double degrees = 57.29577951308232;
-  distortion.mean_angle_difference =
-      distortions.angle_difference * degrees / (3.0 * static_cast<double>(sums.counted));
+  distortion.mean_angle_difference = distortions.angle_difference * degrees / (3.0 * counted);
   // Area(M) / (4 pi) / L2(M)^2 with Sander et al.'s L2(M), their equation 3, which weights with the
   // areas in space.
   distortion.stretch_efficiency = std::min(1.0, 1.0 / distortions.squared_stretch);
