@@ -102,24 +102,40 @@ double termOf(const Image& image, double mass, const MapEnergy& energy) {
                  AreaTerm(image.area / (mass * energy.area_of_mass), energy).value);
 }
 
-/// Energy of the triangles around a vertex that is at u; infinite if one is flipped.
-double energyAround(const Positions& sphere, const MapCorner* corners, std::size_t count,
-                    const Vector3d& u, const MapEnergy& energy) {
-  double sum = 0.0;
-  Vector3d to_first = sphere.col(corners[0].neighbor) - u;
-  const Vector3d to_begin = to_first;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool is_last = i + 1 == count;
-    const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
-    const Image image(u, to_first, to_next, corners[i]);
-    if (!isSurelyPositive(to_first, to_next, image.determinant) &&
-        !(image.determinant > 0.0 && isOutward(u, sphere.col(corners[i].neighbor),
-                                               sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
-      return std::numeric_limits<double>::infinity();
-    sum += termOf(image, corners[i].mass, energy);
+/// Calls visit(corner, next corner, to the neighbour, to the next one) for the triangles around a
+/// vertex that is at u.
+template <typename Visit>
+void forEachTriangle(const Positions& sphere, const MapRing& ring, const Vector3d& u,
+                     const Visit& visit) {
+  const Vector3d to_begin = sphere.col(ring.begin()->neighbor) - u;
+  Vector3d to_first = to_begin;
+  for (const MapCorner* corner = ring.begin(); corner != ring.end(); ++corner) {
+    const bool is_last = corner + 1 == ring.end();
+    const MapCorner& next = is_last ? *ring.begin() : corner[1];
+    const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(next.neighbor) - u);
+    visit(*corner, next, to_first, to_next);
     to_first = to_next;
   }
-  return sum;
+}
+
+/// Energy of the triangles around a vertex that is at u; infinite if one is flipped.
+double energyAround(const Positions& sphere, const MapRing& ring, const Vector3d& u,
+                    const MapEnergy& energy) {
+  double sum = 0.0;
+  bool is_flipped = false;
+  forEachTriangle(sphere, ring, u,
+                  [&](const MapCorner& corner, const MapCorner& next, const Vector3d& to_first,
+                      const Vector3d& to_next) {
+                    if (is_flipped)
+                      return;
+                    const Image image(u, to_first, to_next, corner);
+                    is_flipped =
+                        !isSurelyPositive(to_first, to_next, image.determinant) &&
+                        !(image.determinant > 0.0 &&
+                          isOutward(u, sphere.col(corner.neighbor), sphere.col(next.neighbor)));
+                    sum += termOf(image, corner.mass, energy);
+                  });
+  return is_flipped ? std::numeric_limits<double>::infinity() : sum;
 }
 
 /// Energy, gradient and Hessian in a tangent basis.
@@ -144,55 +160,52 @@ struct Model {
   }
 };
 
-Model modelAround(const Positions& sphere, const MapCorner* corners, std::size_t count,
-                  const Vector3d& u, const TangentBasis& basis, const MapEnergy& energy) {
+Model modelAround(const Positions& sphere, const MapRing& ring, const Vector3d& u,
+                  const TangentBasis& basis, const MapEnergy& energy) {
   Model model;
   const Vector3d x = basis.col(0);
   const Vector3d y = basis.col(1);
-  Vector3d to_first = sphere.col(corners[0].neighbor) - u;
-  const Vector3d to_begin = to_first;
-  Vector2d first(x.dot(to_first), y.dot(to_first));
-  const Vector2d begin = first;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool is_last = i + 1 == count;
-    const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
-    const Vector2d next = is_last ? begin : Vector2d(x.dot(to_next), y.dot(to_next));
-    const MapCorner& corner = corners[i];
-    const double mass = corner.mass;
-    const Image image(u, to_first, to_next, corner);
-    // A step of x in the tangent plane takes u to u + x - |x|^2 / 2 u, to second order. The
-    // determinant is linear in u.
-    const Vector2d edge = next - first;
-    const Vector2d determinant_gradient(0.5 * (x.dot(image.cross) - edge.y()),
-                                        0.5 * (y.dot(image.cross) + edge.x()));
-    const double determinant_hessian = -image.determinant;
-    const Vector2d dirichlet_gradient =
-        -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
-    const double dirichlet_hessian = 0.25 * (corner.cot_neighbor * (2.0 - to_next.squaredNorm()) +
-                                             corner.cot_next * (2.0 - to_first.squaredNorm()));
-    // The derivative of the arc tangent; ab + ca has the gradient b + c. How the gradient changes
-    // is left out: next to its square it does not count.
-    const Vector2d area_gradient =
-        2.0 / (image.determinant * image.determinant + image.quotient * image.quotient) *
-        (image.quotient * determinant_gradient - 0.5 * image.determinant * (first + next));
+  forEachTriangle(
+      sphere, ring, u,
+      [&](const MapCorner& corner, const MapCorner&, const Vector3d& to_first,
+          const Vector3d& to_next) {
+        const Vector2d first(x.dot(to_first), y.dot(to_first));
+        const Vector2d next(x.dot(to_next), y.dot(to_next));
+        const double mass = corner.mass;
+        const Image image(u, to_first, to_next, corner);
+        // A step of x in the tangent plane takes u to u + x - |x|^2 / 2 u, to second order. The
+        // determinant is linear in u.
+        const Vector2d edge = next - first;
+        const Vector2d determinant_gradient(0.5 * (x.dot(image.cross) - edge.y()),
+                                            0.5 * (y.dot(image.cross) + edge.x()));
+        const double determinant_hessian = -image.determinant;
+        const Vector2d dirichlet_gradient =
+            -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
+        const double dirichlet_hessian =
+            0.25 * (corner.cot_neighbor * (2.0 - to_next.squaredNorm()) +
+                    corner.cot_next * (2.0 - to_first.squaredNorm()));
+        // The derivative of the arc tangent; ab + ca has the gradient b + c. How the gradient
+        // changes is left out: next to its square it does not count.
+        const Vector2d area_gradient =
+            2.0 / (image.determinant * image.determinant + image.quotient * image.quotient) *
+            (image.quotient * determinant_gradient - 0.5 * image.determinant * (first + next));
 
-    const double angle_weight = mass * energy.angle_weight;
-    const double by_determinant = 1.0 / image.determinant;
-    const double angle = angle_weight * image.dirichlet * by_determinant;
-    const AreaTerm term(image.area / (mass * energy.area_of_mass), energy);
-    const double by_area = 1.0 / image.area;
-    model.value += angle + mass * term.value;
-    model.addFunctionOf(angle_weight * by_determinant, 0.0, dirichlet_gradient, dirichlet_hessian);
-    model.addFunctionOf(-angle * by_determinant, 2.0 * angle * by_determinant * by_determinant,
-                        determinant_gradient, determinant_hessian);
-    model.addMixed(-angle_weight * by_determinant * by_determinant, determinant_gradient,
-                   dirichlet_gradient);
-    model.addFunctionOf(mass * term.slope * by_area,
-                        mass * std::max(0.0, term.curvature - term.slope) * by_area * by_area,
-                        area_gradient, 0.0);
-    to_first = to_next;
-    first = next;
-  }
+        const double angle_weight = mass * energy.angle_weight;
+        const double by_determinant = 1.0 / image.determinant;
+        const double angle = angle_weight * image.dirichlet * by_determinant;
+        const AreaTerm term(image.area / (mass * energy.area_of_mass), energy);
+        const double by_area = 1.0 / image.area;
+        model.value += angle + mass * term.value;
+        model.addFunctionOf(angle_weight * by_determinant, 0.0, dirichlet_gradient,
+                            dirichlet_hessian);
+        model.addFunctionOf(-angle * by_determinant, 2.0 * angle * by_determinant * by_determinant,
+                            determinant_gradient, determinant_hessian);
+        model.addMixed(-angle_weight * by_determinant * by_determinant, determinant_gradient,
+                       dirichlet_gradient);
+        model.addFunctionOf(mass * term.slope * by_area,
+                            mass * std::max(0.0, term.curvature - term.slope) * by_area * by_area,
+                            area_gradient, 0.0);
+      });
   return model;
 }
 
@@ -241,7 +254,7 @@ void colorVertices(const Triangles& triangles, const CornerTable& corners, Index
   }
 
   NeighborRows by_color = nodesOfParts(color, taken_by.size());
-  rows.vertices = std::move(by_color.neighbors);
+  rows.vertices.assign(by_color.neighbors.begin(), by_color.neighbors.end());
   rows.colors = std::move(by_color.offsets);
 }
 
@@ -314,20 +327,20 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
   return rows;
 }
 
-bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,
-                const Vector3d& at) {
-  for (std::size_t i = 0; i < count; ++i)
-    if (!isOutward(at, sphere.col(corners[i].neighbor),
-                   sphere.col(corners[i + 1 == count ? 0 : i + 1].neighbor)))
-      return false;
-  return true;
+bool isMapValid(const Positions& sphere, const MapRing& ring, const Vector3d& at) {
+  bool is_valid = true;
+  forEachTriangle(
+      sphere, ring, at, [&](const MapCorner& corner, const MapCorner& next, const auto&...) {
+        is_valid =
+            is_valid && isOutward(at, sphere.col(corner.neighbor), sphere.col(next.neighbor));
+      });
+  return is_valid;
 }
 
-double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std::size_t count,
-                      const MapEnergy& energy) {
+double relaxMapVertex(Positions& sphere, Index v, const MapRing& ring, const MapEnergy& energy) {
   const Vector3d u = sphere.col(v);
   const TangentBasis basis = tangentBasis(u);
-  const Model model = modelAround(sphere, corners, count, u, basis, energy);
+  const Model model = modelAround(sphere, ring, u, basis, energy);
   const Vector2d step = newtonStep(model);
   const double slope = model.gradient.dot(step);
   // What cannot be gained is not worth the evaluation.
@@ -339,7 +352,7 @@ double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std:
   double length = 1.0;
   for (int k = 0; k < most_halvings; ++k) {
     const Vector3d moved = (u + length * direction).normalized();
-    const double value = energyAround(sphere, corners, count, moved, energy);
+    const double value = energyAround(sphere, ring, moved, energy);
     constexpr double sufficient = 1e-2;
     if (value <= model.value + sufficient * length * slope) {
       sphere.col(v) = moved;
@@ -353,53 +366,26 @@ double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std:
 double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy, int requested) {
   double gain = 0.0;
   for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c) {
-    const std::size_t first = rows.colors[c];
-    const std::size_t count = rows.colors[c + 1] - first;
-    const int threads = threadCount(requested, count);
-    gain += sumOfBlocks(count, threads, 0.0, [&](std::size_t begin, std::size_t end) {
-      double part = 0.0;
-      for (std::size_t i = first + begin; i < first + end; ++i)
-        part += relaxMapVertex(sphere, rows.vertices[i], &rows.corners[rows.begin[i]],
-                               rows.begin[i + 1] - rows.begin[i], energy);
-      return part;
+    const auto first = static_cast<Index>(rows.colors[c]);
+    const std::size_t count = rows.colors[c + 1] - rows.colors[c];
+    gain += accumulate(count, threadCount(requested, count), 0.0, [&](Index i, double& sum) {
+      sum += relaxMapVertex(sphere, rows.vertices[first + i], rows.around(first + i), energy);
     });
   }
   return gain;
 }
 
-namespace {
-
-/// A third of the sum of term(image, mass) over all corners.
-template <typename Term>
-double sumOverTriangles(const Positions& sphere, const MapRows& rows, int requested,
-                        const Term& term) {
-  const std::size_t n = rows.vertices.size();
-  const int threads = threadCount(requested, n);
-  return sumOfBlocks(
-             n, threads, 0.0,
-             [&](std::size_t begin, std::size_t end) {
-               double part = 0.0;
-               for (std::size_t i = begin; i < end; ++i) {
-                 const Vector3d u = sphere.col(rows.vertices[i]);
-                 for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
-                   const std::uint32_t next = r + 1 == rows.begin[i + 1] ? rows.begin[i] : r + 1;
-                   part += term(Image(u, sphere.col(rows.corners[r].neighbor) - u,
-                                      sphere.col(rows.corners[next].neighbor) - u, rows.corners[r]),
-                                rows.corners[r].mass);
-                 }
-               }
-               return part;
-             }) /
-         3.0;
-}
-
-}  // namespace
-
 double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& energy,
-                 int threads) {
-  return sumOverTriangles(sphere, rows, threads, [&](const Image& image, double mass) {
-    return termOf(image, mass, energy);
+                 int requested) {
+  const std::size_t n = rows.vertices.size();
+  const double sum = accumulate(n, threadCount(requested, n), 0.0, [&](Index i, double& part) {
+    const Vector3d u = sphere.col(rows.vertices[i]);
+    forEachTriangle(sphere, rows.around(i), u,
+                    [&](const MapCorner& corner, const MapCorner&, const auto&... to_others) {
+                      part += termOf(Image(u, to_others..., corner), corner.mass, energy);
+                    });
   });
+  return sum / 3.0;  // each triangle is around three vertices
 }
 
 }  // namespace spherical_param::internal

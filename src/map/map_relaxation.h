@@ -1,6 +1,7 @@
 #pragma once
 
 #include "indexed.h"
+#include "rows.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>
@@ -21,6 +22,9 @@ struct MapCorner {
   float cot_next;
 };
 
+/// The triangles around a vertex, counter-clockwise.
+using MapRing = Row<MapCorner>;
+
 /// The distortion that is minimised: the weights of its terms, and what areas are measured with.
 struct MapEnergy {
   double angle_weight;  ///< of what the angles are off
@@ -32,10 +36,14 @@ struct MapEnergy {
 /// The corners around the vertices of a mesh, in the order in which they are worked on: vertices of
 /// one colour, no two of them neighbours, after those of another.
 struct MapRows {
-  std::vector<Index> vertices;
-  std::vector<std::uint32_t> begin;  ///< v + 1 positions in `corners`
-  std::vector<MapCorner> corners;    ///< counter-clockwise
-  std::vector<std::size_t> colors;   ///< where the vertices of each colour begin, and their end
+  Indexed<Index> vertices;
+  Indexed<std::uint32_t> begin;     ///< v + 1 positions in `corners`
+  std::vector<MapCorner> corners;   ///< of each vertex, counter-clockwise
+  std::vector<std::size_t> colors;  ///< where the vertices of each colour begin, and their end
+
+  MapRing around(Index i) const {
+    return {corners.data() + begin[i], corners.data() + begin[i + 1]};
+  }
 };
 
 /// Cotangents of the angles of a triangle; of a needle, those of one that is not as thin: its
@@ -48,15 +56,13 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
                     const Indexed<float>& masses, Index vertex_count, int threads);
 
 /// Whether a point of the sphere makes all triangles counter-clockwise with its ring, for sure.
-bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,
-                const Eigen::Vector3d& at);
+bool isMapValid(const Positions& sphere, const MapRing& ring, const Eigen::Vector3d& at);
 
 /// Moves a vertex by one step of Newton's method, shortened until the distortion of its triangles
 /// falls, and none is flipped.
 ///
 /// \return by how much the energy fell; 0: the vertex was not moved.
-double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std::size_t count,
-                      const MapEnergy& energy);
+double relaxMapVertex(Positions& sphere, Index v, const MapRing& ring, const MapEnergy& energy);
 
 /// relaxMapVertex() for all vertices.
 ///

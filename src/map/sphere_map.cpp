@@ -156,14 +156,14 @@ bool insertVertex(const MapHierarchy& hierarchy, Index v, const MapEnergy& energ
     work.corners.push_back(
         {first, hierarchy.ring_masses[r], cotangents[0], cotangents[1], cotangents[2]});
   }
+  const internal::MapRing around(work.corners.data(), work.corners.data() + work.corners.size());
   const Vector3d point = kernelPoint(sphere, work);
-  if (!internal::isMapValid(sphere, work.corners.data(), work.corners.size(), point))
+  if (!internal::isMapValid(sphere, around, point))
     return false;
   sphere.col(v) = point;
   constexpr int steps = 4;
   for (int step = 0; step < steps; ++step)
-    if (!(internal::relaxMapVertex(sphere, v, work.corners.data(), work.corners.size(), energy) >
-          0.0))
+    if (!(internal::relaxMapVertex(sphere, v, around, energy) > 0.0))
       break;
   return true;
 }
