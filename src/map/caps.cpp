@@ -100,24 +100,29 @@ double fractionOnSurface(const Vector3d& from, const Vector3d& to,
   return inside;
 }
 
-/// Triangles without those at vertices whose triangles are not one fan.
-Triangles manifoldPart(Triangles triangles, std::size_t vertices) {
-  while (triangles.cols() > 0) {
-    const MeshTopology topology = checkTopology(triangles, vertices, 1);
-    if (topology.manifold())
-      break;
+/// Leaves out the triangles for which is_kept(their corners) is false.
+template <typename IsKept>
+void keepTriangles(Triangles& triangles, const IsKept& is_kept) {
+  std::vector<Index> kept;
+  for (Index t = 0; t < triangles.cols(); ++t)
+    if (is_kept(triangles.col(t)))
+      kept.push_back(t);
+  triangles = Triangles(triangles(Eigen::all, kept));
+}
+
+/// Leaves out triangles at vertices whose triangles are not one fan.
+void keepManifoldPart(Triangles& triangles, std::size_t vertices) {
+  Eigen::Index before = 0;
+  while (triangles.cols() != before) {
+    before = triangles.cols();
     Indexed<char> is_fault(vertices, 0);
-    for (const Index v : topology.nonmanifold_vertices)
+    for (const Index v : checkTopology(triangles, vertices, 1).nonmanifold_vertices)
       is_fault[v] = 1;
-    Eigen::Index kept = 0;
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-      if (is_fault[triangles(0, t)] + is_fault[triangles(1, t)] + is_fault[triangles(2, t)] == 0)
-        triangles.col(kept++) = triangles.col(t).eval();
-    if (kept == triangles.cols())
-      break;
-    triangles.conservativeResize(3, kept);
+    keepTriangles(triangles, [&](const auto& corners) {
+      return std::none_of(corners.begin(), corners.end(),
+                          [&](Index v) { return is_fault[v] != 0; });
+    });
   }
-  return triangles;
 }
 
 /// Calls visit(vertex on the surface, vertex in an opening) for edges between the two.
@@ -157,8 +162,8 @@ std::vector<Index> compact(Triangles& triangles, Eigen::Index vertex_count) {
   return used;
 }
 
-OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
-                       const std::function<bool(const Vector3d&)>& is_open) {
+void cutOpenings(Positions& directions, Triangles& triangles,
+                 const std::function<bool(const Vector3d&)>& is_open) {
   const std::size_t count = columnCount(directions);
   Indexed<Side> sides(count, Side::Surface);
   forEachIndex(count, 0, [&](Index i) {
@@ -193,21 +198,12 @@ OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
     move(v, 1.0 - fraction, place(u, v, fraction));
   });
 
-  Triangles left(3, triangles.cols());
-  Eigen::Index kept = 0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k)
-      if (sides[triangles(k, t)] == Side::Surface) {
-        left.col(kept++) = triangles.col(t);
-        break;
-      }
-  left.conservativeResize(3, kept);
-
-  OpenSphere sphere;
-  sphere.triangles = manifoldPart(std::move(left), count);
-  const std::vector<Index> used = compact(sphere.triangles, directions.cols());
-  sphere.directions = columnsOf(moved, used);
-  return sphere;
+  keepTriangles(triangles, [&](const auto& corners) {
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](Index v) { return sides[v] == Side::Surface; });
+  });
+  keepManifoldPart(triangles, count);
+  directions = columnsOf(moved, compact(triangles, directions.cols()));
 }
 
 }  // namespace spherical_param::internal

@@ -23,19 +23,13 @@ CappedMesh capOpenings(const Positions& points, const Triangles& triangles);
 /// ascending
 std::vector<Index> compact(Triangles& triangles, Eigen::Index vertex_count);
 
-/// A part of a triangulated sphere.
-struct OpenSphere {
-  Positions directions;  ///< 3 x w, unit vectors
-  Triangles triangles;   ///< 3 x m', of the columns of `directions`; manifold
-};
-
 /// Cuts openings into a triangulated sphere. Vertices near their boundaries are moved to them,
 /// along edges, so that triangles keep their shapes; triangles of vertices in openings and on
-/// boundaries alone are left out.
+/// boundaries alone are left out. The rest is manifold, and empty if all is open.
 ///
 /// \param directions 3 x n, unit vectors; \param triangles 3 x m, of the sphere.
 /// \param is_open    whether a direction is in an opening; called by several threads.
-OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
-                       const std::function<bool(const Eigen::Vector3d&)>& is_open);
+void cutOpenings(Positions& directions, Triangles& triangles,
+                 const std::function<bool(const Eigen::Vector3d&)>& is_open);
 
 }  // namespace spherical_param::internal

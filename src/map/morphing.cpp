@@ -54,18 +54,19 @@ PairChoice choosePairs(const SphereSurface& first, const SphereSurface& second,
   PairChoice choice;
   std::unordered_map<Index, std::size_t> of_first;
   std::unordered_map<Index, std::size_t> of_second;
-  const auto out_of_range = [](Index vertex, const SphereSurface& surface, const char* which) {
-    return "vertex " + std::to_string(vertex) + " is not in the " + which + " mesh, which has " +
-           std::to_string(surface.points().cols());
+  const auto fault_of = [](Index vertex, const SphereSurface& surface, const char* which) {
+    const Eigen::Index count = surface.points().cols();
+    return vertex >= 0 && vertex < count ? std::string()
+                                         : "vertex " + std::to_string(vertex) + " is not in the " +
+                                               which + " mesh, which has " + std::to_string(count);
   };
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const PointPair& pair = pairs[i];
-    if (pair.first < 0 || pair.first >= first.points().cols()) {
-      impossible.push_back({i, out_of_range(pair.first, first, "first")});
-      continue;
-    }
-    if (pair.second < 0 || pair.second >= second.points().cols()) {
-      impossible.push_back({i, out_of_range(pair.second, second, "second")});
+    std::string fault = fault_of(pair.first, first, "first");
+    if (fault.empty())
+      fault = fault_of(pair.second, second, "second");
+    if (!fault.empty()) {
+      impossible.push_back({i, fault});
       continue;
     }
     const auto a = of_first.find(pair.first);
@@ -107,14 +108,10 @@ CornerTable cornersOf(const Triangles& triangles, const Positions& vertices) {
 /// Moves a vertex on the sphere, unless that would flip one of its triangles.
 bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable& corners, Index v,
                 const Vector3d& place) {
-  const Vector3d old = sphere.col(v);
-  sphere.col(v) = place;
-  bool flips = false;
-  corners.forEachCorner(
-      v, [&](Index t, Index) { flips = flips || internal::isFlipped(sphere, triangles, t); });
-  if (flips)
-    sphere.col(v) = old;
-  return !flips;
+  const bool fits = internal::fitsAt(place, v, sphere, triangles, corners);
+  if (fits)
+    sphere.col(v) = place;
+  return fits;
 }
 
 /// Puts vertices of the second mesh that are next to one of the first at its place.
@@ -237,15 +234,10 @@ void morphOnGrid(const SphereSurface& first, const SphereSurface& second, const 
                  MorphResult& morph) {
   const internal::SphereLocator on_second(sphere, second.triangles(), options.threads);
   GridSphere grid = gridWithPairs(options, places);
-  if (first.isOpen() || second.isOpen()) {
-    internal::OpenSphere open =
-        internal::cutOpenings(grid.directions, grid.triangles, [&](const Vector3d& u) {
-          return first.isCap(first.locate(u).triangle) ||
-                 second.isCap(on_second.locate(u).triangle);
-        });
-    grid.directions = std::move(open.directions);
-    grid.triangles = std::move(open.triangles);
-  }
+  if (first.isOpen() || second.isOpen())
+    internal::cutOpenings(grid.directions, grid.triangles, [&](const Vector3d& u) {
+      return first.isCap(first.locate(u).triangle) || second.isCap(on_second.locate(u).triangle);
+    });
   morph.triangles = std::move(grid.triangles);
   morph.sphere = std::move(grid.directions);
   morph.first_places = locateAll(morph.sphere, first, options.threads);

@@ -6,10 +6,7 @@
 #include "index_loops.h"
 #include "input_checks.h"
 #include "sample_elimination.h"
-#include "sphere_mesh.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/mesh_topology.h"
-#include "spherical_param/self_intersection.h"
 #include "triangle_geometry.h"
 #include "vertex_normals.h"
 
@@ -242,19 +239,10 @@ std::size_t candidateCount(std::size_t count) {
   return (count <= many ? 5 : 3) * count;
 }
 
-/// Three numbers in [0, 1) for each point, which follow from their place alone, whichever thread
-/// asks.
-class RandomNumbers {
-public:
-  explicit RandomNumbers(std::uint32_t seed) : start_(internal::splitmix64(seed)) {}
-  double at(Index point, int which) const {
-    const auto place = 3 * static_cast<std::uint64_t>(point) + static_cast<unsigned>(which);
-    return static_cast<double>(internal::splitmix64(start_ + place) >> 11U) * 0x1p-53;
-  }
-
-private:
-  std::uint64_t start_;
-};
+/// A number in [0, 1), which follows from its place alone, whichever thread asks.
+double randomNumber(std::uint64_t place) {
+  return static_cast<double>(internal::splitmix64(place) >> 11U) * 0x1p-53;
+}
 
 /// The sums of the areas up to each triangle, and in the end of all.
 std::vector<double> sumsOfAreas(const SphereSurface& surface) {
@@ -270,17 +258,18 @@ std::vector<double> sumsOfAreas(const SphereSurface& surface) {
 /// Points of a surface by area: one from each of as many parts of equal area.
 SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
   const std::vector<double> sums = sumsOfAreas(surface);
-  const RandomNumbers random(seed);
+  const std::uint64_t start = internal::splitmix64(seed);
   const auto n = static_cast<Index>(count);
   SurfacePoints result{Positions(3, n), Positions(3, n), std::vector<SphereLocation>(count)};
   internal::forEachIndex(count, 0, [&](Index i) {
-    const double place = (i + random.at(i, 0)) / n * sums.back();
+    const std::uint64_t first = start + 3 * static_cast<std::uint64_t>(i);
+    const double place = (i + randomNumber(first)) / n * sums.back();
     // The last triangle that begins at or before the place: one with an area.
     const auto next = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
     SphereLocation location;
     location.triangle = static_cast<Index>(next - sums.begin() - 1);
-    const double root = std::sqrt(random.at(i, 1));
-    const double fraction = random.at(i, 2);
+    const double root = std::sqrt(randomNumber(first + 1));
+    const double fraction = randomNumber(first + 2);
     location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
     const SurfaceSample sample = surface.evaluate(location);
     result.points.col(i) = sample.position;
@@ -303,80 +292,6 @@ Positions pixelDirections(int side) {
     directions.col(i) = square.direction(i);
   return directions;
 }
-
-// --- Edges around triangles that intersect -------------------------------------------------------
-
-double angleBetween(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// A resampled mesh whose edges are flipped.
-class FlippableMesh {
-public:
-  FlippableMesh(const ResampledMesh& mesh, int threads)
-      : points_(mesh.points), directions_(mesh.directions),
-        mesh_(mesh.triangles, internal::columnCount(mesh.points), threads) {}
-
-  Triangles triangles() const { return mesh_.triangles(); }
-
-  /// The triangles within this number of rings around some triangles; ascending.
-  std::vector<Index> around(std::vector<Index> triangles, int rings) const {
-    for (int ring = 0; ring < rings; ++ring) {
-      std::vector<Index> wider;
-      for (const Index t : triangles)
-        for (int k = 0; k < 3; ++k)
-          mesh_.forEachAround(mesh_.vertex(t, k), [&](Index near, int) { wider.push_back(near); });
-      internal::sortUnique(wider);
-      triangles = std::move(wider);
-    }
-    return triangles;
-  }
-
-  /// Flips sides of some triangles as long as that makes angles smaller; returns how often.
-  std::size_t flipSidesOf(const std::vector<Index>& triangles) {
-    constexpr int most_sweeps = 20;
-    std::size_t flips = 0;
-    bool is_changed = true;
-    for (int sweep = 0; sweep < most_sweeps && is_changed; ++sweep) {
-      is_changed = false;
-      for (const Index t : triangles)
-        for (int k = 0; k < 3; ++k)
-          if (isBetterFlipped(t, k) && mesh_.flip(t, k)) {
-            is_changed = true;
-            ++flips;
-            break;
-          }
-    }
-    return flips;
-  }
-
-private:
-  /// Sum of the angles opposite to the edge from b to c.
-  double oppositeAngles(Index a, Index b, Index c, Index d) const {
-    const auto angle_at = [&](Index v) {
-      return angleBetween(points_.col(b) - points_.col(v), points_.col(c) - points_.col(v));
-    };
-    return angle_at(a) + angle_at(d);
-  }
-  bool isOutward(Index a, Index b, Index c) const {
-    return internal::isOutward(directions_.col(a), directions_.col(b), directions_.col(c));
-  }
-  bool isBetterFlipped(Index triangle, int corner) const {
-    const Index a = mesh_.vertex(triangle, corner);
-    const Index b = mesh_.vertex(triangle, (corner + 1) % 3);
-    const Index c = mesh_.vertex(triangle, (corner + 2) % 3);
-    const Index d =
-        mesh_.vertex(mesh_.neighbor(triangle, corner), mesh_.oppositeCorner(triangle, corner));
-    // Rounding must not flip an edge forth and back.
-    constexpr double least_gain = 1e-9;
-    return oppositeAngles(b, a, d, c) < oppositeAngles(a, b, c, d) - least_gain &&
-           isOutward(a, b, d) && isOutward(a, d, c);
-  }
-
-  const Positions& points_;
-  const Positions& directions_;
-  internal::SphereMesh mesh_;
-};
 
 }  // namespace
 
@@ -421,56 +336,14 @@ SphereMapOptions mapOptionsForResampling() {
 
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid) {
   ResampledMesh mesh{{}, {}, grid.directions, grid.triangles};
-  if (surface.isOpen()) {
-    internal::OpenSphere open =
-        internal::cutOpenings(grid.directions, grid.triangles, [&](const Vector3d& direction) {
-          return surface.isCap(surface.locate(direction).triangle);
-        });
-    mesh.directions = std::move(open.directions);
-    mesh.triangles = std::move(open.triangles);
-  }
+  if (surface.isOpen())
+    internal::cutOpenings(mesh.directions, mesh.triangles, [&](const Vector3d& direction) {
+      return surface.isCap(surface.locate(direction).triangle);
+    });
   SurfaceSamples samples = surface.evaluate(mesh.directions);
   mesh.points = std::move(samples.positions);
   mesh.normals = std::move(samples.normals);
   return mesh;
-}
-
-IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
-  if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
-    throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
-                       " points need as many directions, all finite; give what resampleSurface() "
-                       "returned");
-  internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
-  Execution options;
-  options.threads = threads;
-  auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
-  IntersectionRemoval result{pairs.size(), pairs.size(), 0};
-  const int workers = internal::threadCount(threads, internal::columnCount(mesh.triangles));
-  const MeshTopology topology =
-      checkTopology(mesh.triangles, internal::columnCount(mesh.points), workers);
-  if (topology.isOpenSurface())
-    return result;
-  if (!topology.isSphere())
-    throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
-                       "consistently oriented mesh of genus 0 over all points; give what "
-                       "resampleSurface() returned");
-  FlippableMesh flippable(mesh, workers);
-  // Around what is left, farther and farther.
-  constexpr int most_rounds = 6;
-  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
-    std::vector<Index> triangles;
-    for (const auto& pair : pairs)
-      triangles.insert(triangles.end(), pair.begin(), pair.end());
-    triangles = flippable.around(std::move(triangles), round);
-    const std::size_t flips = flippable.flipSidesOf(triangles);
-    if (flips == 0)
-      continue;
-    result.flips += flips;
-    mesh.triangles = flippable.triangles();
-    pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
-    result.left = pairs.size();
-  }
-  return result;
 }
 
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {

@@ -1,8 +1,10 @@
 #include "boundary_loops.h"
 #include "corner_table.h"
 #include "index_loops.h"
+#include "sphere_mesh.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/resampling.h"
+#include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 #include "triangle_geometry.h"
 
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -19,11 +22,44 @@ namespace spherical_param {
 namespace {
 
 using Eigen::Vector3d;
+using internal::CornerTable;
+using internal::Indexed;
+using internal::SphereMesh;
 
 constexpr int kMaxRounds = 100;
 constexpr int kSweepsOfRound = 5;
 
 using Pairs = std::vector<std::array<Index, 2>>;
+
+/// The vertices of triangles, ascending.
+std::vector<Index> verticesOf(const std::vector<Index>& zone, const Triangles& triangles) {
+  std::vector<Index> vertices;
+  for (const Index t : zone)
+    for (const Index v : triangles.col(t))
+      vertices.push_back(v);
+  internal::sortUnique(vertices);
+  return vertices;
+}
+
+/// The triangles at vertices, ascending.
+std::vector<Index> trianglesAt(const std::vector<Index>& vertices, const CornerTable& corners) {
+  std::vector<Index> zone;
+  for (const Index v : vertices)
+    corners.forEachCorner(v, [&](Index t, Index) { zone.push_back(t); });
+  internal::sortUnique(zone);
+  return zone;
+}
+
+/// The triangles of pairs and of a number of rings around them.
+std::vector<Index> zoneAround(const Pairs& pairs, int rings, const Triangles& triangles,
+                              const CornerTable& corners) {
+  std::vector<Index> zone;
+  for (const auto& pair : pairs)
+    zone.insert(zone.end(), pair.begin(), pair.end());
+  for (int ring = 0; ring < rings; ++ring)
+    zone = trianglesAt(verticesOf(zone, triangles), corners);
+  return zone;
+}
 
 /// Slides vertices of a mesh along its surface.
 class Sliding {
@@ -47,19 +83,21 @@ public:
     report.before = pairs.size();
     report.after = pairs.size();
     ResampledMesh best;
-    internal::Indexed<char> moved_of_best;
+    Indexed<char> moved_of_best;
     for (; !pairs.empty() && report.rounds < kMaxRounds; ++report.rounds) {
       if (best.points.cols() == 0) {
         best = mesh_;
         moved_of_best = moved_;
       }
       // Two rings around the triangles that intersect, and one more after every ten rounds.
-      const std::vector<Index> zone = around(pairs, 2 + report.rounds / 10);
+      const std::vector<Index> zone = verticesOf(
+          zoneAround(pairs, 2 + report.rounds / 10, mesh_.triangles, corners_), mesh_.triangles);
       for (int sweep = 0; sweep < kSweepsOfRound; ++sweep)
         for (const Index v : zone)
           slide(v);
       // Pairs that were there are among those of the zone.
-      pairs = findSelfIntersectionsOf(mesh_.points, mesh_.triangles, trianglesAt(zone), options);
+      pairs = findSelfIntersectionsOf(mesh_.points, mesh_.triangles, trianglesAt(zone, corners_),
+                                      options);
       if (pairs.size() < report.after) {
         report.after = pairs.size();
         best = mesh_;
@@ -74,33 +112,6 @@ public:
   }
 
 private:
-  /// The vertices of the triangles, and those that are up to some edges away, ascending.
-  std::vector<Index> around(const Pairs& pairs, int rings) const {
-    std::vector<Index> zone;
-    for (const auto& pair : pairs)
-      for (const Index t : pair)
-        for (Index k = 0; k < 3; ++k)
-          zone.push_back(mesh_.triangles(k, t));
-    internal::sortUnique(zone);
-    for (int ring = 0; ring < rings; ++ring) {
-      std::vector<Index> wider = zone;
-      for (const Index t : trianglesAt(zone))
-        for (Index k = 0; k < 3; ++k)
-          wider.push_back(mesh_.triangles(k, t));
-      internal::sortUnique(wider);
-      zone = std::move(wider);
-    }
-    return zone;
-  }
-
-  std::vector<Index> trianglesAt(const std::vector<Index>& vertices) const {
-    std::vector<Index> triangles;
-    for (const Index v : vertices)
-      corners_.forEachCorner(v, [&](Index t, Index) { triangles.push_back(t); });
-    internal::sortUnique(triangles);
-    return triangles;
-  }
-
   /// Moves a vertex towards its neighbours on the sphere, towards those that are far in space most,
   /// as far as no triangle is flipped.
   void slide(Index v) {
@@ -119,7 +130,7 @@ private:
     const Vector3d from = mesh_.directions.col(v);
     for (const double step : {0.5, 0.25, 0.125, 0.0625}) {
       const Vector3d to = ((1.0 - step) * from + step / weights * sum).normalized();
-      if (!fits(v, to))
+      if (!to.allFinite() || !internal::fitsAt(to, v, mesh_.directions, mesh_.triangles, corners_))
         continue;
       const SurfaceSample sample = surface_.evaluate(to);
       mesh_.directions.col(v) = to;
@@ -130,24 +141,51 @@ private:
     }
   }
 
-  bool fits(Index v, const Vector3d& direction) const {
-    bool is_fit = direction.allFinite();
-    corners_.forEachCorner(v, [&](Index t, Index k) {
-      is_fit = is_fit &&
-               internal::isOutward(
-                   direction, mesh_.directions.col(mesh_.triangles(internal::nextCorner(k), t)),
-                   mesh_.directions.col(mesh_.triangles(internal::previousCorner(k), t)));
-    });
-    return is_fit;
-  }
-
   const SphereSurface& surface_;
   ResampledMesh& mesh_;
   int threads_;
-  internal::CornerTable corners_;
-  internal::Indexed<char> moved_;
-  internal::Indexed<char> is_fixed_;  ///< on the boundary
+  CornerTable corners_;
+  Indexed<char> moved_;
+  Indexed<char> is_fixed_;  ///< on the boundary
 };
+
+/// Whether the angles opposite to the side of a diamond become smaller if it is flipped, and the
+/// new triangles are outward on the sphere.
+bool isBetterFlipped(const SphereMesh::Diamond& at, const ResampledMesh& mesh) {
+  const auto angle_at = [&](Index v, Index from, Index to) {
+    const Vector3d a = mesh.points.col(from) - mesh.points.col(v);
+    const Vector3d b = mesh.points.col(to) - mesh.points.col(v);
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  };
+  const auto is_outward = [&](Index i, Index j, Index k) {
+    return internal::isOutward(mesh.directions.col(i), mesh.directions.col(j),
+                               mesh.directions.col(k));
+  };
+  // Rounding must not flip an edge forth and back.
+  constexpr double least_gain = 1e-9;
+  return angle_at(at.a, at.c, at.d) + angle_at(at.b, at.c, at.d) <
+             angle_at(at.c, at.a, at.b) + angle_at(at.d, at.a, at.b) - least_gain &&
+         is_outward(at.c, at.a, at.d) && is_outward(at.c, at.d, at.b);
+}
+
+/// Flips sides of some triangles as long as that makes angles smaller; returns how often.
+std::size_t flipSidesOf(const std::vector<Index>& triangles, const ResampledMesh& mesh,
+                        SphereMesh& flippable) {
+  constexpr int most_sweeps = 20;
+  std::size_t flips = 0;
+  bool is_changed = true;
+  for (int sweep = 0; sweep < most_sweeps && is_changed; ++sweep) {
+    is_changed = false;
+    for (const Index t : triangles)
+      for (int k = 0; k < 3; ++k)
+        if (isBetterFlipped(flippable.diamond(t, k), mesh) && flippable.flip(t, k)) {
+          is_changed = true;
+          ++flips;
+          break;
+        }
+  }
+  return flips;
+}
 
 }  // namespace
 
@@ -161,6 +199,42 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int
   internal::checkTriangles("untangle", mesh.triangles, n);
   const int most = internal::threadCount(threads, internal::columnCount(mesh.points));
   return Sliding(surface, mesh, most).run();
+}
+
+IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
+  if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
+    throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
+                       " points need as many directions, all finite; give what resampleSurface() "
+                       "returned");
+  internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
+  Execution options;
+  options.threads = threads;
+  auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+  IntersectionRemoval result{pairs.size(), pairs.size(), 0};
+  const std::size_t count = internal::columnCount(mesh.points);
+  const int workers = internal::threadCount(threads, internal::columnCount(mesh.triangles));
+  const MeshTopology topology = checkTopology(mesh.triangles, count, workers);
+  if (topology.isOpenSurface())
+    return result;
+  if (!topology.isSphere())
+    throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
+                       "consistently oriented mesh of genus 0 over all points; give what "
+                       "resampleSurface() returned");
+  SphereMesh flippable(mesh.triangles, count, workers);
+  // Around what is left, farther and farther.
+  constexpr int most_rounds = 6;
+  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
+    const CornerTable corners(mesh.triangles, count, workers);
+    const std::size_t flips =
+        flipSidesOf(zoneAround(pairs, round, mesh.triangles, corners), mesh, flippable);
+    if (flips == 0)
+      continue;
+    result.flips += flips;
+    mesh.triangles = flippable.triangles();
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+    result.left = pairs.size();
+  }
+  return result;
 }
 
 }  // namespace spherical_param
