@@ -191,7 +191,6 @@ struct Output {
   int frequency = 0;          ///< of the grid
   std::optional<SphericalHarmonics> harmonics;
   std::optional<UntanglingReport> untangling;
-  std::size_t flipped_edges = 0;  ///< after it
   MeshTopology topology;
   MeshMeasures measures;
   std::size_t self_intersections = 0;  ///< pairs of triangles
@@ -284,11 +283,9 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   output.stages.push_back(console.end(std::to_string(output.pointCount()) + " points"));
   if (settings.slides()) {
     console.begin("untangle");
-    output.untangling = untangle(surface, output.mesh, settings.threads());
-    // Flips may remove what sliding leaves; the edges of an image are given.
-    if (output.untangling->after > 0 && !settings.writesImage()) {
-      output.flipped_edges = removeIntersections(output.mesh, settings.threads()).flips;
-    }
+    // The edges of an image are given.
+    output.untangling =
+        untangle(surface, output.mesh, {!settings.writesImage(), settings.threads()});
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
   }
   if (!output.isCloud() && !mapped.colors.empty()) {
@@ -401,7 +398,7 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
                                    : Json({{"self_intersections_before", untangling->before},
                                            {"rounds", untangling->rounds},
                                            {"moved", untangling->moved},
-                                           {"flipped_edges", output.flipped_edges}});
+                                           {"flipped_edges", untangling->flips}});
   const auto& distance = output.distance;
   json["distance"] =
       !distance ? Json()

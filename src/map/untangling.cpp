@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +29,12 @@ constexpr int kMaxRounds = 100;
 constexpr int kSweepsOfRound = 5;
 
 using Pairs = std::vector<std::array<Index, 2>>;
+
+Execution onThreads(int threads) {
+  Execution execution;
+  execution.threads = threads;
+  return execution;
+}
 
 /// The vertices of triangles, ascending.
 std::vector<Index> verticesOf(const std::vector<Index>& zone, const Triangles& triangles) {
@@ -67,7 +72,7 @@ public:
   Sliding(const SphereSurface& surface, ResampledMesh& mesh, int threads)
       : surface_(surface), mesh_(mesh), threads_(threads),
         corners_(mesh.triangles, internal::columnCount(mesh.points), threads),
-        moved_(internal::columnCount(mesh.points), 0), is_fixed_(moved_) {
+        is_fixed_(internal::columnCount(mesh.points), 0) {
     if (surface.isOpen())
       for (const std::vector<Index>& loop :
            internal::boundaryLoops(mesh.triangles, is_fixed_.size()))
@@ -75,20 +80,14 @@ public:
           is_fixed_[v] = 1;
   }
 
-  UntanglingReport run() {
-    Execution options;
-    options.threads = threads_;
-    Pairs pairs = findSelfIntersections(mesh_.points, mesh_.triangles, options);
+  /// \param pairs that intersect, at the end those that still do.
+  UntanglingReport run(Pairs& pairs) {
     UntanglingReport report;
     report.before = pairs.size();
-    report.after = pairs.size();
-    ResampledMesh best;
-    Indexed<char> moved_of_best;
+    const Positions start = mesh_.directions;
+    ResampledMesh best = mesh_;
+    Pairs best_pairs = pairs;
     for (; !pairs.empty() && report.rounds < kMaxRounds; ++report.rounds) {
-      if (best.points.cols() == 0) {
-        best = mesh_;
-        moved_of_best = moved_;
-      }
       // Two rings around the triangles that intersect, and one more after every ten rounds.
       const std::vector<Index> zone = verticesOf(
           zoneAround(pairs, 2 + report.rounds / 10, mesh_.triangles, corners_), mesh_.triangles);
@@ -97,17 +96,16 @@ public:
           slide(v);
       // Pairs that were there are among those of the zone.
       pairs = findSelfIntersectionsOf(mesh_.points, mesh_.triangles, trianglesAt(zone, corners_),
-                                      options);
-      if (pairs.size() < report.after) {
-        report.after = pairs.size();
+                                      onThreads(threads_));
+      if (pairs.size() < best_pairs.size()) {
         best = mesh_;
-        moved_of_best = moved_;
+        best_pairs = pairs;
       }
     }
-    if (report.rounds > 0) {
-      mesh_ = std::move(best);
-      report.moved = std::accumulate(moved_of_best.begin(), moved_of_best.end(), Index{0});
-    }
+    mesh_ = std::move(best);
+    pairs = std::move(best_pairs);
+    for (Index v = 0; v < start.cols(); ++v)
+      report.moved += mesh_.directions.col(v) != start.col(v) ? 1 : 0;
     return report;
   }
 
@@ -136,7 +134,6 @@ private:
       mesh_.directions.col(v) = to;
       mesh_.points.col(v) = sample.position;
       mesh_.normals.col(v) = sample.normal;
-      moved_[v] = 1;
       return;
     }
   }
@@ -145,7 +142,6 @@ private:
   ResampledMesh& mesh_;
   int threads_;
   CornerTable corners_;
-  Indexed<char> moved_;
   Indexed<char> is_fixed_;  ///< on the boundary
 };
 
@@ -187,9 +183,30 @@ std::size_t flipSidesOf(const std::vector<Index>& triangles, const ResampledMesh
   return flips;
 }
 
+/// Flips edges around triangles that intersect, farther and farther from what is left; returns how
+/// often.
+std::size_t flipAround(Pairs& pairs, ResampledMesh& mesh, int threads) {
+  const std::size_t count = internal::columnCount(mesh.points);
+  SphereMesh flippable(mesh.triangles, count, threads);
+  std::size_t all = 0;
+  constexpr int most_rounds = 6;
+  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
+    const CornerTable corners(mesh.triangles, count, threads);
+    const std::size_t flips =
+        flipSidesOf(zoneAround(pairs, round, mesh.triangles, corners), mesh, flippable);
+    if (flips == 0)
+      continue;
+    all += flips;
+    mesh.triangles = flippable.triangles();
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+  }
+  return all;
+}
+
 }  // namespace
 
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads) {
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
+                          const UntanglingOptions& options) {
   const Eigen::Index n = mesh.points.cols();
   if (mesh.normals.cols() != n || mesh.directions.cols() != n)
     throw InvalidInput("untangle: " + std::to_string(n) + " points, " +
@@ -197,44 +214,14 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int
                        std::to_string(mesh.directions.cols()) +
                        " directions; give a mesh of resampleSurface()");
   internal::checkTriangles("untangle", mesh.triangles, n);
-  const int most = internal::threadCount(threads, internal::columnCount(mesh.points));
-  return Sliding(surface, mesh, most).run();
-}
-
-IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
-  if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
-    throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
-                       " points need as many directions, all finite; give what resampleSurface() "
-                       "returned");
-  internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
-  Execution options;
-  options.threads = threads;
-  auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
-  IntersectionRemoval result{pairs.size(), pairs.size(), 0};
   const std::size_t count = internal::columnCount(mesh.points);
-  const int workers = internal::threadCount(threads, internal::columnCount(mesh.triangles));
-  const MeshTopology topology = checkTopology(mesh.triangles, count, workers);
-  if (topology.isOpenSurface())
-    return result;
-  if (!topology.isSphere())
-    throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
-                       "consistently oriented mesh of genus 0 over all points; give what "
-                       "resampleSurface() returned");
-  SphereMesh flippable(mesh.triangles, count, workers);
-  // Around what is left, farther and farther.
-  constexpr int most_rounds = 6;
-  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
-    const CornerTable corners(mesh.triangles, count, workers);
-    const std::size_t flips =
-        flipSidesOf(zoneAround(pairs, round, mesh.triangles, corners), mesh, flippable);
-    if (flips == 0)
-      continue;
-    result.flips += flips;
-    mesh.triangles = flippable.triangles();
-    pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
-    result.left = pairs.size();
-  }
-  return result;
+  const int threads = internal::threadCount(options.threads, count);
+  Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+  UntanglingReport report = Sliding(surface, mesh, threads).run(pairs);
+  if (options.flips && !pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
+    report.flips = flipAround(pairs, mesh, threads);
+  report.after = pairs.size();
+  return report;
 }
 
 }  // namespace spherical_param

@@ -165,9 +165,7 @@ pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOption
   spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
       surface, spherical_param::makeGridSphere(
                    options.grid, spherical_param::gridFrequency(options.grid, wanted, surface)));
-  // Other edges may remove the intersections that sliding leaves.
-  if (spherical_param::untangle(surface, resampled, threads).after > 0)
-    spherical_param::removeIntersections(resampled, threads);
+  spherical_param::untangle(surface, resampled, {true, threads});
   pcl::PolygonMesh output;
   output.cloud = cloudOf(resampled.points, resampled.normals);
   output.polygons = polygonsOf(resampled.triangles);

@@ -126,7 +126,6 @@ struct Remeshed {
   std::vector<std::array<Index, 2>> self_intersections;
   int frequency = 0;
   UntanglingReport untangling;
-  std::size_t flipped_edges = 0;
 };
 
 Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t points,
@@ -137,12 +136,7 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
   result.mesh = resampleSurface(surface, grid);
   listener.step("resample", 1.0);
   listener.step("untangle", 0.0);
-  result.untangling = untangle(surface, result.mesh, threads);
-  // Flips may remove what sliding leaves.
-  if (result.untangling.after > 0) {
-    listener.step("untangle", 0.8);
-    result.flipped_edges = removeIntersections(result.mesh, threads).flips;
-  }
+  result.untangling = untangle(surface, result.mesh, {true, threads});
   listener.step("untangle", 1.0);
   result.locations = surface.evaluate(result.mesh.directions).locations;
   result.self_intersections =
@@ -193,7 +187,8 @@ py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::siz
                 "frequency"_a = is_even ? py::none() : py::cast(remeshed.frequency),
                 "self_intersections"_a = toArray(remeshed.self_intersections),
                 "self_intersections_before"_a = remeshed.untangling.before,
-                "moved"_a = remeshed.untangling.moved, "flipped_edges"_a = remeshed.flipped_edges);
+                "moved"_a = remeshed.untangling.moved,
+                "flipped_edges"_a = remeshed.untangling.flips);
   addLocations(remeshed.locations, "source", dict);
   return dict;
 }

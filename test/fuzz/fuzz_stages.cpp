@@ -167,7 +167,7 @@ SphereSurface surfaceFrom(Bytes& bytes, const Positions& points, Watch& watch) {
   return {points, mapped.triangles, mapped.sphere, options};
 }
 
-void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool untangles) {
+void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool flips) {
   const auto grid = bytes.choice<SphereGrid>(2);
   GridSphere directions = makeGridSphere(grid, atMost(4, bytes.integerOr(2), 1 << 15));
   if (bytes.oneIn(8))
@@ -175,10 +175,7 @@ void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool untangles) 
   ResampledMesh mesh = resampleSurface(surface, directions);
   if (bytes.oneIn(8))
     mesh.points(bytes.byte() % 3, bytes.byte() % mesh.points.cols()) = bytes.real();
-  if (untangles)
-    untangle(surface, mesh, bytes.integerOr(0));
-  else
-    removeIntersections(mesh, bytes.integerOr(0));
+  untangle(surface, mesh, {flips, bytes.integerOr(0)});
   require(isSphere(mesh.triangles, mesh.points) || !isSphere(directions.triangles, mesh.points),
           "the remeshed surface is a sphere");
   geometryImageOfMesh(mesh);

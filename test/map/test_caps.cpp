@@ -105,7 +105,6 @@ TEST(Caps, ResamplingLeavesTheOpeningsOpen) {
   EXPECT_NEAR(surfaceArea(mesh.points, mesh.triangles), surface.area(), 0.01 * surface.area());
   const Triangles triangles = mesh.triangles;
   untangle(surface, mesh);
-  EXPECT_EQ(removeIntersections(mesh).flips, 0U);
   EXPECT_EQ(mesh.triangles, triangles);
 }
 

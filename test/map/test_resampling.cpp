@@ -1,15 +1,12 @@
 #include "spherical_param/map/resampling.h"
 
 #include "charts.h"
-#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -151,48 +148,6 @@ TEST(GeometryImage, PixelsThatDifferOnTheBorderAreAveraged) {
     image.positions.col(corner) += Vector3d(0.0, corner, 4.0);
   expected.col(0) += Vector3d(0.0, 12.0, 4.0);
   EXPECT_LT((meshOfGeometryImage(image).points - before.points - expected).norm(), 1e-13);
-}
-
-/// A long body with a groove along it, and a map that is twisted, so that the edges of a grid run
-/// askew to the groove.
-ResampledMesh groovedBody() {
-  const SphereSurface surface =
-      test::mappedOver(test::spiralSphere(20000), [](const Vector3d& u) {
-        const double angle =
-            std::remainder(std::atan2(u.y(), u.x()) + 4.0 * u.z(), 2.0 * test::kPi);
-        const double radius =
-            std::hypot(u.x(), u.y()) * (1.0 - 0.9 * std::exp(-16.0 * angle * angle));
-        return Vector3d(radius * std::cos(angle), radius * std::sin(angle), 6.0 * u.z());
-      }).surface();
-  return resampled(surface, SphereGrid::Icosahedral, 16);
-}
-
-TEST(RemoveIntersections, FlipsEdgesUntilNoTrianglesIntersect) {
-  const ResampledMesh before = groovedBody();
-  ResampledMesh mesh = before;
-  const IntersectionRemoval result = removeIntersections(mesh, 1);
-  EXPECT_EQ(result.found, findSelfIntersections(before.points, before.triangles).size());
-  EXPECT_GT(result.found, 0U);
-  EXPECT_GT(result.flips, 0U);
-  EXPECT_EQ(result.left, 0U);
-  EXPECT_EQ(findSelfIntersections(mesh.points, mesh.triangles).size(), 0U);
-  EXPECT_EQ(mesh.points, before.points);
-  EXPECT_EQ(mesh.directions, before.directions);
-  EXPECT_TRUE(test::isSphereOverAll(mesh.triangles, static_cast<Index>(mesh.points.cols())));
-  EXPECT_TRUE(test::isOneToOne(mesh.directions, mesh.triangles));
-  // Triangles elsewhere stay: those that no flip changed are most of them.
-  const auto old = test::canonical(before.triangles);
-  const auto now = test::canonical(mesh.triangles);
-  std::vector<std::array<Index, 3>> kept;
-  std::set_intersection(old.begin(), old.end(), now.begin(), now.end(), std::back_inserter(kept));
-  EXPECT_GE(kept.size() + 2 * result.flips, old.size());
-  EXPECT_GT(kept.size(), old.size() / 4);
-  // Nothing is left to do, and any number of threads does the same.
-  EXPECT_EQ(removeIntersections(mesh).flips, 0U);
-  EXPECT_EQ(test::canonical(mesh.triangles), now);
-  ResampledMesh other = before;
-  removeIntersections(other, 3);
-  EXPECT_EQ(other.triangles, mesh.triangles);
 }
 
 }  // namespace

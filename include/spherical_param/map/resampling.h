@@ -85,47 +85,38 @@ SphereMapOptions mapOptionsForResampling();
 /// \return the mesh, with the triangles of the grid; of a closed surface with all of them.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
+/// Parameters of untangle().
+struct UntanglingOptions {
+  bool flips = true;  ///< flip edges where sliding is not enough; false: the triangles stay
+  int threads = 0;    ///< 0: one for each processor; [0, 1024]
+};
+
 /// Report of untangle().
 struct UntanglingReport {
   std::size_t before = 0;  ///< pairs of triangles that intersected
   std::size_t after = 0;   ///< pairs that still do
   int rounds = 0;          ///< number of rounds
   Index moved = 0;         ///< number of moved vertices
+  std::size_t flips = 0;   ///< number of flipped edges
 };
 
 /// Slides vertices along the surface until triangles do not intersect: long thin triangles cut
-/// across its folds. The mesh keeps its triangles and its one-to-one map. Vertices away from
-/// intersections and on a boundary stay.
+/// across its folds. Vertices away from intersections and on a boundary stay.
+///
+/// Where a map is stretched, the edges of a grid may run across a valley of the surface instead of
+/// along it, and its triangles fold. So edges around what sliding leaves are flipped, if the
+/// opposite angles become smaller in space (C. L. Lawson, 1977) and the new triangles are not
+/// flipped on the sphere. The mesh stays closed, manifold, of genus 0, and its map one to one. A
+/// mesh with openings keeps its triangles.
 ///
 /// \param surface that the mesh was sampled from.
-/// \param mesh    of resampleSurface(); changed in place. The best result is kept.
-/// \param threads 0: one for each processor; [0, 1024]
+/// \param mesh    of resampleSurface(); changed in place. The best result of sliding is kept.
+/// \param options whether to flip edges, threads
 /// \return the report.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
-
-/// Report of removeIntersections().
-struct IntersectionRemoval {
-  std::size_t found = 0;  ///< pairs of triangles that intersected
-  std::size_t left = 0;   ///< pairs that still do
-  std::size_t flips = 0;  ///< number of flipped edges
-};
-
-/// Flips edges until no triangles intersect: where a map is stretched, the edges of a grid may run
-/// across a valley of the surface instead of along it, and its triangles fold.
-///
-/// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
-/// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
-/// its map one to one. Vertices, normals and all other triangles stay. A mesh with openings does
-/// not change.
-///
-/// \param mesh of resampleSurface(); changed in place.
-/// \param threads 0: one for each processor; [0, 1024]
-/// \return the report.
-/// \throw InvalidInput for a mesh unlike those of resampleSurface().
-/// The same for any number of threads.
-IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
+                          const UntanglingOptions& options = {});
 
 /// Points spread evenly over a surface, in space.
 struct SurfacePoints {
