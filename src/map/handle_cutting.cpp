@@ -6,6 +6,7 @@
 #include "shortest_paths.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "triangle_geometry.h"
 #include "union_find.h"
 
 #include <algorithm>
@@ -64,16 +65,9 @@ struct Loop {
 class HandleCutter {
 public:
   explicit HandleCutter(CutMesh mesh)
-      : original_(mesh.triangles), vertex_count_(indexCount(mesh.vertex_of)), scaled_(mesh.points),
-        across_(sidesAcross(original_)), cut_(std::move(mesh)) {
-    // Squares of lengths are in the range of double, whatever the unit.
-    const Eigen::Vector3d center =
-        0.5 * scaled_.rowwise().minCoeff() + 0.5 * scaled_.rowwise().maxCoeff();
-    scaled_.colwise() -= center;
-    const double extent = scaled_.cwiseAbs().maxCoeff();
-    if (extent > 0.0)
-      scaled_ /= extent;
-  }
+      : original_(mesh.triangles), vertex_count_(indexCount(mesh.vertex_of)),
+        scaled_(internal::scaledToUnit(mesh.points)), across_(sidesAcross(original_)),
+        cut_(std::move(mesh)) {}
 
   void cutOne() {
     // A loop is shortened at most so often: each time costs a search.
@@ -239,7 +233,7 @@ private:
 
   Triangles original_;
   Index vertex_count_;  ///< of the mesh
-  Positions scaled_;    ///< its vertices, at most 1 from the origin in each coordinate
+  Positions scaled_;    ///< its vertices, of any unit
   Indexed<Index> across_;
   std::vector<std::array<Index, 2>> cuts_;  ///< both sides of each edge
   CutMesh cut_;

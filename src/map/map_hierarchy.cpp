@@ -26,10 +26,6 @@ constexpr double kMinMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
 constexpr Index kMaxCoarseNeighbors = 8;
 
-double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  return 0.5 * (b - a).cross(c - a).norm();
-}
-
 /// A vertex that may be taken out; the key sorts by cost.
 struct Candidate {
   std::uint32_t key;
@@ -153,27 +149,24 @@ public:
 private:
   void takeOut(Index most_neighbors) {
     findCandidates(most_neighbors);
-    const Index most = indexCount(alive_) - 4;
     const std::size_t first = removed_.size();
+    const std::size_t most = first + alive_.size() - 4;
     blocked_.clear();
     for (Candidate candidate : candidates_) {
-      if (indexCount(gone_) == most)
+      if (removed_.size() == most)
         break;
       if (blocked_.contains(candidate.vertex) || !chooseTarget(candidate))
         continue;
-      removed_.push_back({candidate.vertex, static_cast<std::uint32_t>(ring_.size())});
+      const std::size_t ring_begin = ring_.size();
       collapse(candidate.vertex, candidate.target);
-      gone_.push_back(candidate.vertex);
+      removed_.push_back({candidate.vertex, ring_begin, ring_.size()});
     }
-    if (gone_.empty())
+    if (removed_.size() == first)
       return;
     batch_begin_.push_back(first);
-    std::sort(gone_.begin(), gone_.end());
-    alive_.erase(
-        std::remove_if(alive_.begin(), alive_.end(),
-                       [&](Index v) { return std::binary_search(gone_.begin(), gone_.end(), v); }),
-        alive_.end());
-    gone_.clear();
+    alive_.erase(std::remove_if(alive_.begin(), alive_.end(),
+                                [&](Index v) { return mesh_.triangleAt(v) < 0; }),
+                 alive_.end());
   }
 
   /// Whether the mesh stays a manifold if w is moved to its neighbour v, and is no tetrahedron.
@@ -218,7 +211,8 @@ private:
     fan.push_back(mesh_.merge(w));
 
     const auto area = [&](Index i) {
-      return areaOf(points_.col(v), points_.col(ring[i]), points_.col(ring[i + 1]));
+      const Vector3d apex = points_.col(v);
+      return 0.5 * (points_.col(ring[i]) - apex).cross(points_.col(ring[i + 1]) - apex).norm();
     };
     const Index count = fan.count() - 1;
     double sum = 0.0;
@@ -232,23 +226,20 @@ private:
   }
 
   void findCandidates(Index most_neighbors) {
-    found_.resize(alive_.size());
-    const int threads = threadCount(requested_threads_, alive_.size());
-    forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-      std::vector<Index> ring;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Index w = alive_[static_cast<Index>(i)];
-        found_[i] = {0, w, none};
-        if (mesh_.degree(w) > most_neighbors)
-          continue;
-        const auto [cost, target] = cheapestTarget(w, ring, [](Index) { return true; });
-        found_[i] = {keyOf(cost), w, target};
-      }
-    });
-    candidates_.clear();
-    for (const Candidate& candidate : found_)
-      if (candidate.target != none)
-        candidates_.push_back(candidate);
+    candidates_ =
+        collectBlocks<Candidate>(alive_.size(), threadCount(requested_threads_, alive_.size()), {},
+                                 [&](Index begin, Index end, std::vector<Candidate>& found) {
+                                   std::vector<Index> ring;
+                                   for (Index i = begin; i < end; ++i) {
+                                     const Index w = alive_[i];
+                                     if (mesh_.degree(w) > most_neighbors)
+                                       continue;
+                                     const auto [cost, target] =
+                                         cheapestTarget(w, ring, [](Index) { return true; });
+                                     if (target != none)
+                                       found.push_back({keyOf(cost), w, target});
+                                   }
+                                 });
     radixSort(candidates_);
   }
 
@@ -322,21 +313,18 @@ private:
     std::size_t end = removed_.size();
     for (std::size_t b = batch_begin_.size() - 1; b-- > 0;) {
       hierarchy_.batches.push_back(indexCount(order));
-      std::vector<std::pair<Index, std::size_t>> batch;
-      for (std::size_t i = batch_begin_[b]; i < end; ++i)
-        batch.emplace_back(removed_[i].vertex, i);
-      end = batch_begin_[b];
-      std::sort(batch.begin(), batch.end());
-      for (const auto& [vertex, i] : batch) {
-        order.push_back(vertex);
-        const std::size_t ring_end =
-            i + 1 < removed_.size() ? removed_[i + 1].ring_begin : ring_.size();
-        for (std::size_t k = removed_[i].ring_begin; k < ring_end; ++k) {
+      const std::size_t begin = batch_begin_[b];
+      std::sort(&removed_[begin], &removed_[begin] + (end - begin),
+                [](const Removed& one, const Removed& other) { return one.vertex < other.vertex; });
+      for (std::size_t i = begin; i < end; ++i) {
+        order.push_back(removed_[i].vertex);
+        for (std::size_t k = removed_[i].ring_begin; k < removed_[i].ring_end; ++k) {
           hierarchy_.ring.push_back(ring_[k]);
           hierarchy_.ring_masses.push_back(ring_masses_[k]);
         }
         hierarchy_.ring_begin.push_back(static_cast<std::uint32_t>(hierarchy_.ring.size()));
       }
+      end = begin;
     }
     hierarchy_.batches.push_back(indexCount(order));
     const Indexed<Index> rank = inverseOf(order);
@@ -349,7 +337,8 @@ private:
 
   struct Removed {
     Index vertex;
-    std::uint32_t ring_begin;
+    std::size_t ring_begin;
+    std::size_t ring_end;
   };
 
   const Positions& points_;
@@ -359,10 +348,8 @@ private:
   Indexed<Index> alive_;
   IndexSet blocked_;  // vertices at which the batch changes something
   IndexSet marked_;
-  std::vector<Candidate> found_;
-  Indexed<Candidate> candidates_;
+  std::vector<Candidate> candidates_;
   std::vector<Index> work_ring_;
-  std::vector<Index> gone_;
   std::vector<Removed> removed_;
   std::vector<std::size_t> batch_begin_;
   std::vector<Index> ring_;
@@ -375,13 +362,8 @@ private:
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
                                const FractionReport& report) {
   const int most = threadCount(threads, columnCount(points));
-  // Squares of lengths are in the range of double, whatever the unit.
-  const Vector3d center = 0.5 * points.rowwise().minCoeff() + 0.5 * points.rowwise().maxCoeff();
-  const double extent = (points.colwise() - center).cwiseAbs().maxCoeff();
   const Indexed<Index> order = breadthFirst(triangles, columnCount(points), most);
-  Positions scaled = columnsOf(points, order).colwise() - center;
-  if (extent > 0.0)
-    scaled /= extent;
+  const Positions scaled = columnsOf(scaledToUnit(points), order);
   MapHierarchy hierarchy =
       Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads, most).run(report);
   for (Index& v : hierarchy.order)

@@ -8,7 +8,6 @@
 #include "sample_elimination.h"
 #include "spherical_param/errors.h"
 #include "triangle_geometry.h"
-#include "vertex_normals.h"
 
 #include <Eigen/Geometry>
 
@@ -181,10 +180,11 @@ public:
     std::vector<Index> result;
     result.reserve(static_cast<std::size_t>(pixelCount()));
     Index count = 0;
-    forEachPixel([&](Index x, Index y) {
-      const Eigen::Index first = firstPixel(x, y);
-      result.push_back(first == pixel(x, y) ? count++ : entry(result, first));
-    });
+    for (Index y = f_; y >= -f_; --y)
+      for (Index x = -f_; x <= f_; ++x) {
+        const Eigen::Index first = firstPixel(x, y);
+        result.push_back(first == pixel(x, y) ? count++ : entry(result, first));
+      }
     return result;
   }
 
@@ -220,13 +220,6 @@ public:
   }
 
 private:
-  template <typename Visit>
-  void forEachPixel(const Visit& visit) const {
-    for (Index y = f_; y >= -f_; --y)
-      for (Index x = -f_; x <= f_; ++x)
-        visit(x, y);
-  }
-
   Index f_;
 };
 
@@ -244,20 +237,12 @@ double randomNumber(std::uint64_t place) {
   return static_cast<double>(internal::splitmix64(place) >> 11U) * 0x1p-53;
 }
 
-/// The sums of the areas up to each triangle, and in the end of all.
-std::vector<double> sumsOfAreas(const SphereSurface& surface) {
-  const Triangles& triangles = surface.triangles();
-  std::vector<double> sums{0.0};
-  sums.reserve(internal::columnCount(triangles) + 1);
-  // Caps are the last triangles.
-  for (Index t = 0; t < triangles.cols() && !surface.isCap(t); ++t)
-    sums.push_back(sums.back() + 0.5 * internal::areaNormal(surface.points(), triangles, t).norm());
-  return sums;
-}
-
 /// Points of a surface by area: one from each of as many parts of equal area.
 SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  const std::vector<double> sums = sumsOfAreas(surface);
+  const Triangles& triangles = surface.triangles();
+  std::vector<double> sums{0.0};  // of the areas up to each triangle; caps are the last ones
+  for (Index t = 0; t < triangles.cols() && !surface.isCap(t); ++t)
+    sums.push_back(sums.back() + 0.5 * internal::areaNormal(surface.points(), triangles, t).norm());
   const std::uint64_t start = internal::splitmix64(seed);
   const auto n = static_cast<Index>(count);
   SurfacePoints result{Positions(3, n), Positions(3, n), std::vector<SphereLocation>(count)};
@@ -352,7 +337,7 @@ SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std:
     throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
   const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
   const std::vector<Index> kept =
-      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
+      internal::eliminateSamples(all.points, all.normals, count, surface.area());
   SurfacePoints result{
       internal::columnsOf(all.points, kept), internal::columnsOf(all.normals, kept), {}};
   for (const Index i : kept)
@@ -394,29 +379,18 @@ ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
       throw InvalidInput("meshOfGeometryImage: pixel " + std::to_string(i) +
                          " is not finite; every pixel needs a position");
 
-  const std::vector<Index> vertex = square.vertices();
-  ResampledMesh mesh;
-  const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, image.side / 2));
-  mesh.directions.resize(3, n);
-  mesh.points.resize(3, n);
-  mesh.triangles = square.triangles(vertex);
-  for (Eigen::Index i = 0; i < square.pixelCount(); ++i) {
-    mesh.directions.col(entry(vertex, i)) = square.direction(i);
-    mesh.points.col(entry(vertex, i)) = image.positions.col(i);
-  }
+  GridSphere grid = square.grid();
+  ResampledMesh mesh{grid.directions, {}, grid.directions, std::move(grid.triangles)};
   // Sums of two and of four equal numbers are exact: where pixels agree, nothing changes.
-  const Index f = image.side / 2;
-  const auto at = [&](Index x, Index y) { return image.positions.col(square.pixel(x, y)); };
-  const auto point = [&](Index x, Index y) {
-    return mesh.points.col(entry(vertex, square.pixel(x, y)));
-  };
-  for (Index i = 1; i < f; ++i) {
-    point(i, f) = 0.5 * (at(i, f) + at(-i, f));
-    point(i, -f) = 0.5 * (at(i, -f) + at(-i, -f));
-    point(f, i) = 0.5 * (at(f, i) + at(f, -i));
-    point(-f, i) = 0.5 * (at(-f, i) + at(-f, -i));
+  Indexed<int> pixels(internal::columnCount(mesh.points), 0);
+  Eigen::Index i = 0;
+  for (const Index v : square.vertices()) {
+    const Vector3d position = image.positions.col(i++);
+    mesh.points.col(v) = pixels[v] == 0 ? position : Vector3d(mesh.points.col(v) + position);
+    ++pixels[v];
   }
-  point(f, f) = 0.25 * ((at(f, f) + at(-f, f)) + (at(f, -f) + at(-f, -f)));
+  for (Index v = 0; v < pixels.count(); ++v)
+    mesh.points.col(v) /= pixels[v];
 
   const std::size_t count = internal::columnCount(mesh.points);
   const internal::CornerTable corners(mesh.triangles, count, internal::threadCount(0, count));

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <queue>
-#include <unordered_map>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -40,8 +39,6 @@ public:
     }
     std::sort(items.begin(), items.end());
     for (const auto& [key, index] : items) {
-      const Index place = indexCount(order_);
-      cells_.try_emplace(key, place, place).first->second.second = place + 1;
       order_.push_back(index);
       keys_.push_back(key);
     }
@@ -50,32 +47,32 @@ public:
   /// The points, cell by cell.
   const std::vector<Index>& order() const { return order_; }
 
-  /// Calls visit(begin, end) for the ranges of order() in the cell of place i and those around it.
+  /// Calls visit(j) for the places in order() in the cell of place i and those around it.
   template <typename Visit>
-  void forEachCellAround(Index i, const Visit& visit) const {
+  void forEachAround(Index i, const Visit& visit) const {
     constexpr std::uint64_t one_x = std::uint64_t{1} << (2 * kBits);
     constexpr std::uint64_t one_y = std::uint64_t{1} << kBits;
     for (std::uint64_t x = 0; x < 3; ++x)
-      for (std::uint64_t y = 0; y < 3; ++y)
-        for (std::uint64_t z = 0; z < 3; ++z) {
-          const auto cell = cells_.find(keys_[i] + (x - 1) * one_x + (y - 1) * one_y + z - 1);
-          if (cell != cells_.end())
-            visit(cell->second.first, cell->second.second);
-        }
+      for (std::uint64_t y = 0; y < 3; ++y) {
+        // Three cells along z follow each other.
+        const std::uint64_t middle = keys_[i] + (x - 1) * one_x + (y - 1) * one_y;
+        auto key = std::lower_bound(keys_.begin(), keys_.end(), middle - 1);
+        for (; key != keys_.end() && *key <= middle + 1; ++key)
+          visit(static_cast<Index>(key - keys_.begin()));
+      }
   }
 
 private:
   static constexpr unsigned kBits = 21;
 
-  std::vector<Index> order_;                                          ///< points
-  Indexed<std::uint64_t> keys_;                                       ///< of the cell of order_[i]
-  std::unordered_map<std::uint64_t, std::pair<Index, Index>> cells_;  ///< ranges of order_ by key
+  std::vector<Index> order_;     ///< points
+  Indexed<std::uint64_t> keys_;  ///< of the cell of order_[i], ascending
 };
 
 }  // namespace
 
 std::vector<Index> eliminateSamples(const Positions& points, const Positions& normals,
-                                    std::size_t count, double area, int threads) {
+                                    std::size_t count, double area) {
   const double remaining = static_cast<double>(count);
   // The largest radius of disks of which this number fits on the area, and the least that counts.
   const double most = std::sqrt(area / (2.0 * std::sqrt(3.0) * remaining));
@@ -88,21 +85,19 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   const auto for_each_near = [&](Index i, const auto& visit) {
     const Vector3d point = sorted_points.col(i);
     const Vector3d normal = sorted_normals.col(i);
-    grid.forEachCellAround(i, [&](Index begin, Index end) {
-      for (Index j = begin; j < end; ++j) {
-        const double square = (sorted_points.col(j) - point).squaredNorm();
-        if (square >= 4.0 * most * most || j == i || sorted_normals.col(j).dot(normal) < 0.0)
-          continue;
-        const double fraction = 1.0 - std::max(std::sqrt(square), 2.0 * least) / (2.0 * most);
-        const double second = fraction * fraction;
-        const double fourth = second * second;
-        visit(j, fourth * fourth);
-      }
+    grid.forEachAround(i, [&](Index j) {
+      const double square = (sorted_points.col(j) - point).squaredNorm();
+      if (square >= 4.0 * most * most || j == i || sorted_normals.col(j).dot(normal) < 0.0)
+        return;
+      const double fraction = 1.0 - std::max(std::sqrt(square), 2.0 * least) / (2.0 * most);
+      const double second = fraction * fraction;
+      const double fourth = second * second;
+      visit(j, fourth * fourth);
     });
   };
 
   Indexed<double> weights(columnCount(points));
-  forEachIndex(weights.size(), threads, [&](Index i) {
+  forEachIndex(weights.size(), 0, [&](Index i) {
     double sum = 0.0;
     for_each_near(i, [&](Index, double weight) { sum += weight; });
     weights[i] = sum;

@@ -9,7 +9,6 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "triangle_geometry.h"
-#include "vertex_normals.h"
 #include "vertex_quadrics.h"
 
 #include <Eigen/Geometry>
