@@ -18,68 +18,47 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts the vertices of caps behind others.
-class Capping {
-public:
-  explicit Capping(const Positions& points) : points_(points) {}
-
-  void cap(const std::vector<Index>& loop) {
-    std::vector<double> lengths(1, 0.0);  // from the first vertex to each
-    Vector3d moment = Vector3d::Zero();
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Vector3d a = points_.col(loop[i]);
-      const Vector3d b = points_.col(loop[(i + 1) % loop.size()]);
-      lengths.push_back(lengths.back() + (b - a).norm());
-      moment += 0.5 * (lengths[i + 1] - lengths[i]) * (a + b);
-    }
-    Vector3d center = points_.col(loop.front());
-    if (lengths.back() > 0.0)
-      center = moment / lengths.back();
-    else
-      std::iota(lengths.begin(), lengths.end(), 0.0);
-    std::vector<double> angles(loop.size());
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      angles[i] = 2.0 * kPi * (lengths[i] / lengths.back());
-    const RingedDisc disc = ringedDisc(angles);
-
-    const Index rim = indexCount(loop);
-    const Index first = static_cast<Index>(points_.cols()) + indexCount(added_);
-    for (const Index v : disc.triangles.reshaped())
-      corners_.push_back(v < rim ? entry(loop, v) : first + v - rim);
-    // The last vertex of the rim before each angle; rings begin at angle 0.
-    std::size_t before = 0;
-    for (std::size_t i = loop.size(); i < disc.radii.size(); ++i) {
-      const double angle = disc.angles[i];
-      if (angle < angles[before])
-        before = 0;
-      while (before + 1 < angles.size() && angles[before + 1] <= angle)
-        ++before;
-      const double end = before + 1 < angles.size() ? angles[before + 1] : 2.0 * kPi;
-      const double fraction = (angle - angles[before]) / (end - angles[before]);
-      const Vector3d on_loop = (1.0 - fraction) * points_.col(loop[before]) +
-                               fraction * points_.col(loop[(before + 1) % loop.size()]);
-      added_.emplace_back(center + disc.radii[i] * (on_loop - center));
-    }
+/// Adds a cap to the coordinates and the corners of others.
+void addCap(const Positions& points, const std::vector<Index>& loop, std::vector<double>& added,
+            std::vector<Index>& corners) {
+  std::vector<double> lengths(1, 0.0);  // from the first vertex to each
+  Vector3d moment = Vector3d::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector3d a = points.col(loop[i]);
+    const Vector3d b = points.col(loop[(i + 1) % loop.size()]);
+    lengths.push_back(lengths.back() + (b - a).norm());
+    moment += 0.5 * (lengths[i + 1] - lengths[i]) * (a + b);
   }
+  Vector3d center = points.col(loop.front());
+  if (lengths.back() > 0.0)
+    center = moment / lengths.back();
+  else
+    std::iota(lengths.begin(), lengths.end(), 0.0);
+  std::vector<double> angles(loop.size());
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    angles[i] = 2.0 * kPi * (lengths[i] / lengths.back());
+  const RingedDisc disc = ringedDisc(angles);
 
-  CappedMesh take(const Triangles& triangles) const {
-    CappedMesh mesh;
-    mesh.points.resize(3, points_.cols() + indexCount(added_));
-    mesh.points.leftCols(points_.cols()) = points_;
-    Eigen::Index i = points_.cols();
-    for (const Vector3d& point : added_)
-      mesh.points.col(i++) = point;
-    const Eigen::Map<const Triangles> added(corners_.data(), 3, indexCount(corners_) / 3);
-    mesh.triangles.resize(3, triangles.cols() + added.cols());
-    mesh.triangles << triangles, added;
-    return mesh;
+  const Index rim = indexCount(loop);
+  const Index first = static_cast<Index>(points.cols()) + indexCount(added) / 3;
+  for (const Index v : disc.triangles.reshaped())
+    corners.push_back(v < rim ? entry(loop, v) : first + v - rim);
+  // The last vertex of the rim before each angle; rings begin at angle 0.
+  std::size_t before = 0;
+  for (std::size_t i = loop.size(); i < disc.radii.size(); ++i) {
+    const double angle = disc.angles[i];
+    if (angle < angles[before])
+      before = 0;
+    while (before + 1 < angles.size() && angles[before + 1] <= angle)
+      ++before;
+    const double end = before + 1 < angles.size() ? angles[before + 1] : 2.0 * kPi;
+    const double fraction = (angle - angles[before]) / (end - angles[before]);
+    const Vector3d on_loop = (1.0 - fraction) * points.col(loop[before]) +
+                             fraction * points.col(loop[(before + 1) % loop.size()]);
+    const Vector3d point = center + disc.radii[i] * (on_loop - center);
+    added.insert(added.end(), point.begin(), point.end());
   }
-
-private:
-  const Positions& points_;
-  std::vector<Vector3d> added_;
-  std::vector<Index> corners_;
-};
+}
 
 /// Where a vertex is, or is going to be.
 enum class Side : char { Open, Boundary, Surface };
@@ -125,26 +104,20 @@ void keepManifoldPart(Triangles& triangles, std::size_t vertices) {
   }
 }
 
-/// Calls visit(vertex on the surface, vertex in an opening) for edges between the two.
-template <typename Visit>
-void forEachCrossing(const Triangles& triangles, const Indexed<Side>& sides, const Visit& visit) {
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      // An edge is in two triangles, once in each direction.
-      const Index u = triangles(k, t);
-      const Index v = triangles((k + 1) % 3, t);
-      if (sides[u] == Side::Surface && sides[v] == Side::Open)
-        visit(u, v);
-    }
-}
-
 }  // namespace
 
 CappedMesh capOpenings(const Positions& points, const Triangles& triangles) {
-  Capping capping(points);
+  std::vector<double> added;
+  std::vector<Index> corners;
   for (const std::vector<Index>& loop : boundaryLoops(triangles, columnCount(points)))
-    capping.cap(loop);
-  return capping.take(triangles);
+    addCap(points, loop, added, corners);
+  CappedMesh mesh;
+  mesh.points.resize(3, points.cols() + indexCount(added) / 3);
+  mesh.points << points, Eigen::Map<const Positions>(added.data(), 3, indexCount(added) / 3);
+  mesh.triangles.resize(3, triangles.cols() + indexCount(corners) / 3);
+  mesh.triangles << triangles,
+      Eigen::Map<const Triangles>(corners.data(), 3, indexCount(corners) / 3);
+  return mesh;
 }
 
 std::vector<Index> compact(Triangles& triangles, Eigen::Index vertex_count) {
@@ -179,23 +152,29 @@ void cutOpenings(Positions& directions, Triangles& triangles,
       moved.col(v) = place.normalized();
     }
   };
-  const auto crossing = [&](Index u, Index v) {
-    return fractionOnSurface(directions.col(u), directions.col(v), is_open);
+  // Calls visit(vertex on the surface, vertex in an opening, fraction, place) for the edges between
+  // the two: each is in two triangles, once in each direction.
+  const auto for_each_crossing = [&](const auto& visit) {
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Index u = triangles(k, t);
+        const Index v = triangles((k + 1) % 3, t);
+        if (sides[u] != Side::Surface || sides[v] != Side::Open)
+          continue;
+        const double fraction = fractionOnSurface(directions.col(u), directions.col(v), is_open);
+        visit(u, v, fraction,
+              Vector3d((1.0 - fraction) * directions.col(u) + fraction * directions.col(v)));
+      }
   };
-  const auto place = [&](Index u, Index v, double fraction) -> Vector3d {
-    return (1.0 - fraction) * directions.col(u) + fraction * directions.col(v);
-  };
-  forEachCrossing(triangles, sides, [&](Index u, Index v) {
-    const double fraction = crossing(u, v);
+  for_each_crossing([&](Index u, Index, double fraction, const Vector3d& place) {
     if (fraction < kNear)
-      move(u, fraction, place(u, v, fraction));
+      move(u, fraction, place);
   });
   for (Index i = 0; i < directions.cols(); ++i)
     if (moves[i] < 1.0)
       sides[i] = Side::Boundary;
-  forEachCrossing(triangles, sides, [&](Index u, Index v) {
-    const double fraction = crossing(u, v);
-    move(v, 1.0 - fraction, place(u, v, fraction));
+  for_each_crossing([&](Index, Index v, double fraction, const Vector3d& place) {
+    move(v, 1.0 - fraction, place);
   });
 
   keepTriangles(triangles, [&](const auto& corners) {

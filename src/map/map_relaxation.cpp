@@ -306,22 +306,20 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
     rows.begin[i + 1] =
         rows.begin[i] + static_cast<std::uint32_t>(corners.countAt(rows.vertices[i]));
   rows.corners.resize(rows.begin[n]);
-  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<std::array<Index, 3>> behind;  // vertex behind, triangle, corner
-    for (std::size_t i = begin; i < end; ++i) {
-      behind.clear();
-      corners.forEachCorner(rows.vertices[i], [&](Index t, Index k) {
-        behind.push_back({triangles(nextCorner(k), t), t, k});
-      });
-      std::sort(behind.begin(), behind.end());
-      Index neighbor = behind.front()[0];
-      for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
-        const auto at = std::lower_bound(behind.begin(), behind.end(), std::array{neighbor, 0, 0});
-        const auto [v, t, k] = *at;
-        const auto cot = cotangents.col(t);
-        rows.corners[r] = {neighbor, masses[t], cot[k], cot[nextCorner(k)], cot[previousCorner(k)]};
-        neighbor = triangles(previousCorner(k), t);
-      }
+  using VertexBehind = std::array<Index, 3>;  // vertex, triangle, corner
+  forEachIndex<std::vector<VertexBehind>>(n, threads, {}, [&](auto& behind, Index i) {
+    behind.clear();
+    corners.forEachCorner(rows.vertices[i], [&](Index t, Index k) {
+      behind.push_back({triangles(nextCorner(k), t), t, k});
+    });
+    std::sort(behind.begin(), behind.end());
+    Index neighbor = behind.front()[0];
+    for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
+      const auto at = std::lower_bound(behind.begin(), behind.end(), std::array{neighbor, 0, 0});
+      const auto [v, t, k] = *at;
+      const auto cot = cotangents.col(t);
+      rows.corners[r] = {neighbor, masses[t], cot[k], cot[nextCorner(k)], cot[previousCorner(k)]};
+      neighbor = triangles(previousCorner(k), t);
     }
   });
   return rows;

@@ -38,27 +38,11 @@ Vector3d unitVector(const Vector3d& direction) {
   return scaled(direction).normalized();
 }
 
-}  // namespace
-
-SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
-    : sphere_(&sphere), triangles_(&triangles) {
-  threads = threadCount(threads, columnCount(triangles));
-  Positions centers(3, triangles.cols());
-  forEachIndex(columnCount(triangles), threads, [&](Index t) {
-    centers.col(t) =
-        sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
-  });
-  order_ = mortonOrder(centers);
-  tree_ = BoxTree(order_.size(), threads, {}, [&](Index i) { return boxOf(entry(order_, i)); });
-}
-
-FloatBox SphereLocator::boxOf(Index triangle) const {
-  const auto corner = [&](Index k) -> Vector3d {
-    return sphere_->col((*triangles_)(k, triangle)).normalized();
-  };
-  const Vector3d a = corner(0);
-  const Vector3d b = corner(1);
-  const Vector3d c = corner(2);
+/// The box of a spherical triangle.
+FloatBox boxOf(const Eigen::Matrix3d& corners) {
+  const Vector3d a = corners.col(0).normalized();
+  const Vector3d b = corners.col(1).normalized();
+  const Vector3d c = corners.col(2).normalized();
   // A point of the flat triangle with the weights w is by w_a w_b |a - b|^2 + w_b w_c |b - c|^2 +
   // w_c w_a |c - a|^2 <= |longest side|^2 / 3 shorter than the sphere's radius, squared, and its
   // image on the sphere is as far away as its length is less than 1.
@@ -73,6 +57,45 @@ FloatBox SphereLocator::boxOf(Index triangle) const {
                   (box.max().array() + margin).matrix().cast<float>());
 }
 
+/// Weights of the corners of a triangle at a direction.
+/// \param sides signs of the determinants of the direction and the side opposite to each corner
+Vector3d weightsIn(Eigen::Matrix3d corners, const Vector3d& unit, const Eigen::Vector3i& sides) {
+  // Differences from the direction keep the digits in a tiny triangle. The weights are those of
+  // where the ray meets the plane of the corners.
+  corners.colwise() -= unit;
+  Vector3d weights;
+  for (Index k = 0; k < 3; ++k) {
+    const double volume = unit.dot(corners.col((k + 1) % 3).cross(corners.col((k + 2) % 3)));
+    weights[k] = sides[k] > 0 ? std::max(0.0, volume) : 0.0;
+  }
+  // If all is rounding: the middle of the sides and corners that are not excluded.
+  if (!(weights.sum() > 0.0))
+    weights = sides.cwiseMax(0).cast<double>();
+  return weights / weights.sum();
+}
+
+}  // namespace
+
+SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
+    : sphere_(&sphere), triangles_(&triangles) {
+  threads = threadCount(threads, columnCount(triangles));
+  Positions centers(3, triangles.cols());
+  forEachIndex(columnCount(triangles), threads, [&](Index t) {
+    centers.col(t) =
+        sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
+  });
+  order_ = mortonOrder(centers);
+  tree_ = BoxTree(order_.size(), threads, {},
+                  [&](Index i) { return boxOf(corners(entry(order_, i))); });
+}
+
+Eigen::Matrix3d SphereLocator::corners(Index triangle) const {
+  Eigen::Matrix3d result;
+  for (Index k = 0; k < 3; ++k)
+    result.col(k) = sphere_->col((*triangles_)(k, triangle));
+  return result;
+}
+
 SphereLocation SphereLocator::locate(const Vector3d& direction) const {
   const Vector3d unit = unitVector(direction);
   const Vector3d exact = scaled(direction);
@@ -84,39 +107,19 @@ SphereLocation SphereLocator::locate(const Vector3d& direction) const {
     const Index t = entry(order_, i);
     if (hit.triangle >= 0 && hit.triangle < t)
       return;
-    const Vector3d a = sphere_->col((*triangles_)(0, t));
-    const Vector3d b = sphere_->col((*triangles_)(1, t));
-    const Vector3d c = sphere_->col((*triangles_)(2, t));
+    const Eigen::Matrix3d of = corners(t);
     Eigen::Vector3i sides;
-    if ((sides[0] = determinantSign(exact, b, c)) >= 0 &&
-        (sides[1] = determinantSign(exact, c, a)) >= 0 &&
-        (sides[2] = determinantSign(exact, a, b)) >= 0) {
+    if ((sides[0] = determinantSign(exact, of.col(1), of.col(2))) >= 0 &&
+        (sides[1] = determinantSign(exact, of.col(2), of.col(0))) >= 0 &&
+        (sides[2] = determinantSign(exact, of.col(0), of.col(1))) >= 0) {
       hit.triangle = t;
       hit_sides = sides;
     }
   };
   tree_.forEachOverlapping(FloatBox(unit.normalized().cast<float>()), 0, is_found, visit);
   if (hit.triangle >= 0)
-    hit.weights = weightsIn(hit.triangle, unit, hit_sides);
+    hit.weights = weightsIn(corners(hit.triangle), unit, hit_sides);
   return hit;
-}
-
-Vector3d SphereLocator::weightsIn(Index triangle, const Vector3d& unit,
-                                  const Eigen::Vector3i& sides) const {
-  // Differences from the direction keep the digits in a tiny triangle. The weights are those of
-  // where the ray meets the plane of the corners.
-  Eigen::Matrix3d corners;
-  for (Index k = 0; k < 3; ++k)
-    corners.col(k) = sphere_->col((*triangles_)(k, triangle)) - unit;
-  Vector3d weights;
-  for (Index k = 0; k < 3; ++k) {
-    const double volume = unit.dot(corners.col((k + 1) % 3).cross(corners.col((k + 2) % 3)));
-    weights[k] = sides[k] > 0 ? std::max(0.0, volume) : 0.0;
-  }
-  // If all is rounding: the middle of the sides and corners that are not excluded.
-  if (!(weights.sum() > 0.0))
-    weights = sides.cwiseMax(0).cast<double>();
-  return weights / weights.sum();
 }
 
 }  // namespace spherical_param::internal

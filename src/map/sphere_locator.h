@@ -24,12 +24,7 @@ public:
   SphereLocation locate(const Eigen::Vector3d& direction) const;
 
 private:
-  /// Weights of the corners of a triangle at a direction.
-  /// \param sides signs of the determinants of the direction and the side opposite to each corner
-  Eigen::Vector3d weightsIn(Index triangle, const Eigen::Vector3d& unit,
-                            const Eigen::Vector3i& sides) const;
-
-  FloatBox boxOf(Index triangle) const;
+  Eigen::Matrix3d corners(Index triangle) const;
 
   const Positions* sphere_;
   const Triangles* triangles_;

@@ -87,28 +87,19 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
                      "; give a manifold mesh of genus 0 in one piece, each vertex used");
 }
 
-/// Buffers of a thread.
-struct Insertion {
-  std::vector<MapCorner> corners;
-  std::vector<Vector3d> polygon;
-  std::vector<Vector3d> clipped;
-};
-
 /// A point well inside the kernel of a spherical polygon, all of which the first of its vertices
 /// sees: from there each edge runs counter-clockwise. Zero if rounding leaves none.
-Vector3d kernelPoint(const Positions& sphere, Insertion& work) {
-  const std::vector<MapCorner>& ring = work.corners;
+Vector3d kernelPoint(const Positions& sphere, const std::vector<MapCorner>& ring) {
   const std::size_t k = ring.size();
   const auto at = [&](std::size_t i) -> Vector3d { return sphere.col(ring[i % k].neighbor); };
   // As rays. What the two edges at the first vertex leave of the sphere is a lune, from that vertex
   // to its antipode; on its sides are the points at a right angle to both ends.
   const Vector3d apex = at(0);
-  const Vector3d side_behind = at(1) - apex * apex.dot(at(1));
-  const Vector3d side_before = at(k - 1) - apex * apex.dot(at(k - 1));
   // The interior is to the left of the edge out, and to the left of the edge in.
-  const Vector3d out = side_behind.normalized();
-  const Vector3d in = side_before.normalized();
-  std::vector<Vector3d>& polygon = work.polygon;
+  const Vector3d out = (at(1) - apex * apex.dot(at(1))).normalized();
+  const Vector3d in = (at(k - 1) - apex * apex.dot(at(k - 1))).normalized();
+  std::vector<Vector3d> polygon;
+  std::vector<Vector3d> clipped;
   const bool is_reflex = apex.dot(out.cross(in)) < 0.0;
   if (is_reflex)
     polygon = {apex, Vector3d(-in), Vector3d(-apex), Vector3d(-out)};
@@ -118,7 +109,7 @@ Vector3d kernelPoint(const Positions& sphere, Insertion& work) {
     const Vector3d a = at(i);
     // By the difference: the sides of the ring may be short.
     const Vector3d normal = a.cross(at(i + 1) - a).normalized();
-    work.clipped.clear();
+    clipped.clear();
     for (std::size_t p = 0; p < polygon.size(); ++p) {
       const Vector3d& ray = polygon[p];
       const Vector3d& next = polygon[p + 1 == polygon.size() ? 0 : p + 1];
@@ -126,11 +117,11 @@ Vector3d kernelPoint(const Positions& sphere, Insertion& work) {
       const double here = normal.dot(ray - a * (a.dot(ray)));
       const double there = normal.dot(next - a * (a.dot(next)));
       if (here >= 0.0)
-        work.clipped.push_back(ray);
+        clipped.push_back(ray);
       if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0))
-        work.clipped.push_back(((ray * std::abs(there) + next * std::abs(here))).normalized());
+        clipped.push_back(((ray * std::abs(there) + next * std::abs(here))).normalized());
     }
-    polygon.swap(work.clipped);
+    polygon.swap(clipped);
   }
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& ray : polygon)
@@ -143,27 +134,27 @@ Vector3d kernelPoint(const Positions& sphere, Insertion& work) {
 ///
 /// \return false: there is no room for it.
 bool insertVertex(const MapHierarchy& hierarchy, Index v, const MapEnergy& energy,
-                  Positions& sphere, Insertion& work) {
+                  Positions& sphere) {
   const auto i = static_cast<std::size_t>(v) - 4;
   const std::size_t begin = hierarchy.ring_begin[i];
   const std::size_t end = hierarchy.ring_begin[i + 1];
-  work.corners.clear();
+  std::vector<MapCorner> corners;
   for (std::size_t r = begin; r < end; ++r) {
     const Index first = hierarchy.ring[r];
     const Index next = hierarchy.ring[r + 1 == end ? begin : r + 1];
     const Eigen::Vector3f cotangents = internal::mapCotangents(
         hierarchy.points.col(v), hierarchy.points.col(first), hierarchy.points.col(next));
-    work.corners.push_back(
+    corners.push_back(
         {first, hierarchy.ring_masses[r], cotangents[0], cotangents[1], cotangents[2]});
   }
-  const internal::MapRing around(work.corners.data(), work.corners.data() + work.corners.size());
-  const Vector3d point = kernelPoint(sphere, work);
-  if (!internal::isMapValid(sphere, around, point))
+  const internal::MapRing ring(corners.data(), corners.data() + corners.size());
+  const Vector3d point = kernelPoint(sphere, corners);
+  if (!internal::isMapValid(sphere, ring, point))
     return false;
   sphere.col(v) = point;
   constexpr int steps = 4;
   for (int step = 0; step < steps; ++step)
-    if (!(internal::relaxMapVertex(sphere, v, around, energy) > 0.0))
+    if (!(internal::relaxMapVertex(sphere, v, ring, energy) > 0.0))
       break;
   return true;
 }
@@ -171,10 +162,7 @@ bool insertVertex(const MapHierarchy& hierarchy, Index v, const MapEnergy& energ
 /// A regular tetrahedron, with the orientation of the triangles.
 void placeTetrahedron(const MapMesh& mesh, Positions& sphere) {
   const double c = std::sqrt(1.0 / 3.0);
-  sphere.col(0) << c, c, c;
-  sphere.col(1) << -c, -c, c;
-  sphere.col(2) << -c, c, -c;
-  sphere.col(3) << c, -c, -c;
+  sphere.leftCols<4>() << c, -c, -c, c, c, -c, c, -c, c, c, -c, -c;
   if (internal::isFlipped(sphere, mesh.triangles, 0))
     sphere.col(2).swap(sphere.col(3));
 }
@@ -247,14 +235,10 @@ private:
   static constexpr int kMildSweeps = 2;
 
   void insert(Index first, Index end) {
-    const auto count = static_cast<std::size_t>(end - first);
-    const int threads = internal::threadCount(options_.threads, count);
     std::atomic<Index> failed{0};
-    internal::forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t stop) {
-      Insertion work;
-      for (std::size_t i = begin; i < stop; ++i)
-        if (!insertVertex(hierarchy_, first + static_cast<Index>(i), mild_, sphere_, work))
-          ++failed;
+    internal::forEachIndex(static_cast<std::size_t>(end - first), options_.threads, [&](Index i) {
+      if (!insertVertex(hierarchy_, first + i, mild_, sphere_))
+        ++failed;
     });
     if (failed > 0)
       throw ComputeError("computeSphereMap: no room on the sphere for " + std::to_string(failed) +

@@ -144,14 +144,13 @@ public:
 private:
   /// Flipped triangles, ascending.
   std::vector<Index> flipped(const Positions& sphere) const {
-    Indexed<char> is_flipped(columnCount(triangles_));
-    forEachIndex(is_flipped.size(), threads_,
-                 [&](Index t) { is_flipped[t] = isFlipped(sphere, triangles_, t) ? 1 : 0; });
-    std::vector<Index> found;
-    for (Index t = 0; t < is_flipped.count(); ++t)
-      if (is_flipped[t] != 0)
-        found.push_back(t);
-    return found;
+    const std::size_t count = columnCount(triangles_);
+    return collectBlocks<Index>(count, threadCount(threads_, count), {},
+                                [&](Index begin, Index end, std::vector<Index>& found) {
+                                  for (Index t = begin; t < end; ++t)
+                                    if (isFlipped(sphere, triangles_, t))
+                                      found.push_back(t);
+                                });
   }
 
   /// Calls visit(a, b) for the sides opposite to v of the triangles around it.

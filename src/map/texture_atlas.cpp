@@ -64,38 +64,24 @@ double along(const std::array<int, 3>& axis, const Vector3d& point) {
 /// octants would not wrap round, but it could be turned over. Longitude and latitude are cut along
 /// three more half meridians than they need: it is there that triangles take up the poles.
 SphereCells cellsOf(SphereChart chart) {
-  SphereCells cells;
-  switch (chart) {
-  case SphereChart::Equirectangular:
-    for (const int y : {1, -1})
-      for (const int x : {1, -1})
-        cells.push_back({{x_plane, x}, {y_plane, y}});
-    break;
-  case SphereChart::Octahedral:
-    for (const int z : {1, -1})
-      for (const int y : {1, -1})
-        for (const int x : {1, -1})
-          cells.push_back({{x_plane, x}, {y_plane, y}, {z_plane, z}});
-    break;
-  case SphereChart::CubeMap: {
+  if (chart == SphereChart::CubeMap)
     // x - y, x + y, x - z, x + z, y - z and y + z are planes 3 to 8.
-    constexpr std::array<std::array<std::array<int, 2>, 4>, 6> sides = {{
-        {{{3, 1}, {4, 1}, {5, 1}, {6, 1}}},
-        {{{3, -1}, {4, -1}, {5, -1}, {6, -1}}},
-        {{{3, -1}, {4, 1}, {7, 1}, {8, 1}}},
-        {{{3, 1}, {4, -1}, {7, -1}, {8, -1}}},
-        {{{5, -1}, {6, 1}, {7, -1}, {8, 1}}},
-        {{{5, 1}, {6, -1}, {7, 1}, {8, -1}}},
-    }};
-    for (const auto& face : sides) {
-      cells.emplace_back();
-      for (const auto& [plane, sign] : face)
-        cells.back().push_back({plane, sign});
+    return {{{3, 1}, {4, 1}, {5, 1}, {6, 1}},   {{3, -1}, {4, -1}, {5, -1}, {6, -1}},
+            {{3, -1}, {4, 1}, {7, 1}, {8, 1}},  {{3, 1}, {4, -1}, {7, -1}, {8, -1}},
+            {{5, -1}, {6, 1}, {7, -1}, {8, 1}}, {{5, 1}, {6, -1}, {7, 1}, {8, -1}}};
+  SphereCells quarters;
+  for (const int y : {1, -1})
+    for (const int x : {1, -1})
+      quarters.push_back({{x_plane, x}, {y_plane, y}});
+  if (chart == SphereChart::Equirectangular)
+    return quarters;
+  SphereCells octants;
+  for (const int z : {1, -1})
+    for (const std::vector<CellSide>& quarter : quarters) {
+      octants.push_back(quarter);
+      octants.back().push_back({z_plane, z});
     }
-    break;
-  }
-  }
-  return cells;
+  return octants;
 }
 
 /// The place of a point, of any length, that is in a cell.
@@ -141,28 +127,23 @@ bool isPole(const Vector3d& point) {
 }
 
 /// Places of the corners of triangles.
-class Places {
-public:
-  Places(const TextureAtlasOptions& options, const SphereCells& cells, const CutSphere& sphere)
-      : options_(options), cells_(cells), sphere_(sphere) {}
+struct Places {
+  const TextureAtlasOptions& options;
+  const SphereCells& cells;
+  const CutSphere& sphere;
 
   std::array<Vector2d, 3> of(Index t) const {
-    const std::array<Index, 3>& triangle = sphere_.triangles[t];
-    const Index cell = sphere_.cells[t];
+    const std::array<Index, 3>& triangle = sphere.triangles[t];
+    const Index cell = sphere.cells[t];
     std::array<Vector2d, 3> places;
     for (std::size_t k = 0; k < 3; ++k)
-      places[k] = coordinatesIn(options_, cells_[cell], cell, sphere_.points[triangle[k]]);
+      places[k] = coordinatesIn(options, cells[cell], cell, sphere.points[triangle[k]]);
     // A pole is the whole upper or lower side of the image; each triangle has its part of that.
     for (std::size_t k = 0; k < 3; ++k)
-      if (options_.chart == SphereChart::Equirectangular && isPole(sphere_.points[triangle[k]]))
+      if (options.chart == SphereChart::Equirectangular && isPole(sphere.points[triangle[k]]))
         places[k].x() = (places[(k + 1) % 3].x() + places[(k + 2) % 3].x()) / 2.0;
     return places;
   }
-
-private:
-  const TextureAtlasOptions& options_;
-  const SphereCells& cells_;
-  const CutSphere& sphere_;
 };
 
 /// Splits edges until no triangle is turned over in a chart where great circles are not straight.
@@ -337,7 +318,7 @@ TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& spher
   const bool has_poles = options.chart == SphereChart::Equirectangular;
   const SphereCells cells = cellsOf(options.chart);
   CutSphere cut = internal::cutSphere(triangles, sphere, cells, has_poles ? y_plane : -1);
-  const Places places(options, cells, cut);
+  const Places places{options, cells, cut};
   if (has_poles)
     Straightening(places, cut).run();
 
@@ -379,11 +360,12 @@ TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& spher
 Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& values) {
   Index last = -1;
   for (const CutVertex& vertex : atlas.vertices)
-    if (*std::min_element(vertex.vertices.begin(), vertex.vertices.end()) < 0)
-      throw InvalidInput("atCutVertices: the atlas names a vertex below 0; use one that "
-                         "makeTextureAtlas() made");
-  for (const CutVertex& vertex : atlas.vertices)
-    last = std::max(last, *std::max_element(vertex.vertices.begin(), vertex.vertices.end()));
+    for (const Index v : vertex.vertices) {
+      if (v < 0)
+        throw InvalidInput("atCutVertices: the atlas names a vertex below 0; use one that "
+                           "makeTextureAtlas() made");
+      last = std::max(last, v);
+    }
   if (values.cols() != last + 1)
     throw InvalidInput("atCutVertices: there are values of " + std::to_string(values.cols()) +
                        " vertices, the mesh has " + std::to_string(last + 1) +

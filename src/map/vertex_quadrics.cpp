@@ -51,12 +51,9 @@ Vector5d monomials(double x, double y) {
 VertexQuadrics::VertexQuadrics(const Positions& points, const Triangles& triangles,
                                const Positions& normals, const CornerTable& corners, int threads)
     : points_(points), triangles_(triangles), normals_(normals), quadrics_(columnCount(points)) {
-  forEachBlock(quadrics_.size(), threadCount(threads, quadrics_.size()),
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                 Indexed<Index> around;
-                 for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v)
-                   quadrics_[v] = fit(v, corners, around);
-               });
+  forEachIndex<Indexed<Index>>(
+      quadrics_.size(), threadCount(threads, quadrics_.size()), {},
+      [&](Indexed<Index>& around, Index v) { quadrics_[v] = fit(v, corners, around); });
 }
 
 VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& corners,
