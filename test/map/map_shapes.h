@@ -1,5 +1,6 @@
 #pragma once
 
+#include "caps.h"
 #include "exact_predicates.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
@@ -66,25 +67,16 @@ inline Mapped bumpy(const Positions& sphere) {
 /// mapped by computeSphereMap().
 inline Mapped withOpenings(const Mapped& mesh, const Positions& centers, double radius) {
   std::vector<Eigen::Index> kept;
-  std::vector<Index> numbers(static_cast<std::size_t>(mesh.points.cols()), -1);
-  for (Eigen::Index v = 0; v < mesh.points.cols(); ++v)
-    if ((centers.colwise() - mesh.sphere.col(v)).colwise().norm().minCoeff() > radius) {
-      numbers[static_cast<std::size_t>(v)] = static_cast<Index>(kept.size());
-      kept.push_back(v);
-    }
-  std::vector<Index> corners;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    std::array<Index, 3> triangle{};
-    for (std::size_t k = 0; k < 3; ++k)
-      triangle[k] =
-          numbers[static_cast<std::size_t>(mesh.triangles(static_cast<Eigen::Index>(k), t))];
-    if (*std::min_element(triangle.begin(), triangle.end()) >= 0)
-      corners.insert(corners.end(), triangle.begin(), triangle.end());
+    const auto corners = mesh.triangles.col(t);
+    if (std::all_of(corners.begin(), corners.end(), [&](Index v) {
+          return (centers.colwise() - mesh.sphere.col(v)).colwise().norm().minCoeff() > radius;
+        }))
+      kept.push_back(t);
   }
-  Mapped open{
-      mesh.points(Eigen::all, kept),
-      Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3)),
-      mesh.sphere(Eigen::all, kept)};
+  Triangles triangles = mesh.triangles(Eigen::all, kept);
+  const std::vector<Index> used = internal::compact(triangles, mesh.points.cols());
+  Mapped open{mesh.points(Eigen::all, used), triangles, mesh.sphere(Eigen::all, used)};
   const SphereMap map = computeSphereMap(open.points, open.triangles, open.sphere);
   open.sphere = map.sphere;
   open.caps = map.caps;

@@ -17,10 +17,7 @@
 namespace spherical_param {
 namespace {
 
-struct Mesh {
-  Positions points;
-  Triangles triangles;
-};
+using test::Mesh;
 
 /// The grid's own triangles.
 Mesh torus(int rings, int around) {
