@@ -2,10 +2,6 @@
 
 #include "map_shapes.h"
 
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 namespace spherical_param::test {
 
 /// A sphere with bumps of different sizes at places without any symmetry.

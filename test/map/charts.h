@@ -5,12 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-
 namespace spherical_param::test {
 
 using Eigen::Vector2d;

@@ -10,13 +10,11 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <functional>
+#include <iterator>
+#include <limits>
+#include <set>
 #include <string>
-#include <vector>
 
 /// Meshes with a map to the sphere that the tests of the map share.
 namespace spherical_param::test {

@@ -1,6 +1,7 @@
 #include "caps.h"
 
 #include "boundary_loops.h"
+#include "indexed.h"
 #include "map_shapes.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
@@ -9,26 +10,18 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 /// What the map makes of surfaces with openings, by the caps that close them.
 namespace spherical_param {
 namespace {
 
 using Eigen::Vector3d;
+using internal::columnCount;
 using test::Mapped;
-
-std::size_t count(const Positions& points) {
-  return static_cast<std::size_t>(points.cols());
-}
 
 /// The least distance of a point from the loops of a mesh.
 double distanceFromBoundary(const Mapped& mesh, const Vector3d& point) {
   double least = 1e300;
-  for (const auto& loop : internal::boundaryLoops(mesh.triangles, count(mesh.points)))
+  for (const auto& loop : internal::boundaryLoops(mesh.triangles, columnCount(mesh.points)))
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Vector3d a = mesh.points.col(loop[i]);
       const Vector3d b = mesh.points.col(loop[(i + 1) % loop.size()]);
@@ -40,15 +33,15 @@ double distanceFromBoundary(const Mapped& mesh, const Vector3d& point) {
 
 TEST(Caps, CloseAMeshBehindItsVerticesAndTriangles) {
   const Mapped open = test::openBumpy(1500);
-  ASSERT_TRUE(checkTopology(open.triangles, count(open.points)).isOpenSurface());
+  ASSERT_TRUE(checkTopology(open.triangles, columnCount(open.points)).isOpenSurface());
   const internal::CappedMesh capped = internal::capOpenings(open.points, open.triangles);
   EXPECT_EQ(capped.points.leftCols(open.points.cols()), open.points);
   EXPECT_EQ(capped.triangles.leftCols(open.triangles.cols()), open.triangles);
-  EXPECT_TRUE(checkTopology(capped.triangles, count(capped.points)).isSphere());
+  EXPECT_TRUE(checkTopology(capped.triangles, columnCount(capped.points)).isSphere());
   // Each cap has one hub at least, the mean of its loop, and no vertex farther out than the loop.
   EXPECT_LT(capped.points.colwise().norm().maxCoeff(),
             open.points.colwise().norm().maxCoeff() + 1e-12);
-  EXPECT_TRUE(internal::boundaryLoops(capped.triangles, count(capped.points)).empty());
+  EXPECT_TRUE(internal::boundaryLoops(capped.triangles, columnCount(capped.points)).empty());
 
   const Mapped closed = test::bumpy(test::spiralSphere(100));
   EXPECT_EQ(internal::capOpenings(closed.points, closed.triangles).triangles, closed.triangles);
@@ -94,9 +87,9 @@ TEST(Caps, ResamplingLeavesTheOpeningsOpen) {
   const int frequency = gridFrequency(SphereGrid::Icosahedral, 4000, surface);
   ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, frequency));
   EXPECT_NEAR(static_cast<double>(mesh.points.cols()), 4000.0, 300.0);
-  const MeshTopology topology = checkTopology(mesh.triangles, count(mesh.points));
+  const MeshTopology topology = checkTopology(mesh.triangles, columnCount(mesh.points));
   EXPECT_TRUE(topology.isOpenSurface());
-  const auto loops = internal::boundaryLoops(mesh.triangles, count(mesh.points));
+  const auto loops = internal::boundaryLoops(mesh.triangles, columnCount(mesh.points));
   ASSERT_EQ(loops.size(), 3U);
   // Vertices of the boundary are on that of the surface.
   for (const std::vector<Index>& loop : loops)
@@ -112,7 +105,7 @@ TEST(Caps, VerticesOfTheBoundaryDoNotSlide) {
   const Mapped open = test::openBumpy(600);
   const SphereSurface surface = open.surface(SurfaceFit::Linear);
   ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 8));
-  const auto loops = internal::boundaryLoops(mesh.triangles, count(mesh.points));
+  const auto loops = internal::boundaryLoops(mesh.triangles, columnCount(mesh.points));
   // One vertex through the opposite side.
   mesh.points.col(mesh.triangles(0, 0)) *= -1.5;
   const Positions before = mesh.points;
@@ -130,7 +123,7 @@ TEST(Caps, AnAtlasOfAnOpenMeshCoversItAndNothingElse) {
     const Positions points = atCutVertices(atlas, open.points);
     EXPECT_NEAR(surfaceArea(points, atlas.triangles), surfaceArea(open.points, open.triangles),
                 1e-9);
-    EXPECT_TRUE(checkTopology(atlas.triangles, count(points)).isOpenSurface());
+    EXPECT_TRUE(checkTopology(atlas.triangles, columnCount(points)).isOpenSurface());
   }
 }
 
@@ -149,14 +142,14 @@ TEST(Caps, AMorphIsOpenWhereEitherSurfaceIs) {
       options.samples = 2000;
       const MorphResult morph =
           morphSurfaces(opens ? holed : whole, opens ? whole : holed, options);
-      const MeshTopology topology = checkTopology(morph.triangles, count(morph.first));
+      const MeshTopology topology = checkTopology(morph.triangles, columnCount(morph.first));
       EXPECT_TRUE(topology.isOpenSurface());
       EXPECT_EQ(topology.euler_characteristic, 1);
       const Positions& of_open = opens ? morph.first : morph.second;
       EXPECT_NEAR(surfaceArea(of_open, morph.triangles), holed.area(),
                   connectivity == MorphConnectivity::AllVertices ? 1e-9 : 0.03 * holed.area());
       const std::vector<SphereLocation>& places = opens ? morph.first_places : morph.second_places;
-      ASSERT_EQ(places.size(), count(of_open));
+      ASSERT_EQ(places.size(), columnCount(of_open));
       for (std::size_t i = 0; i < places.size(); ++i) {
         EXPECT_FALSE(holed.isCap(places[i].triangle));
         EXPECT_LT(

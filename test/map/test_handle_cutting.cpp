@@ -7,13 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <limits>
-#include <set>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 
@@ -63,10 +56,6 @@ std::vector<Mesh> meshes() {
   return all;
 }
 
-Eigen::Index vertexCount(const CutMesh& cut) {
-  return *std::max_element(cut.vertex_of.begin(), cut.vertex_of.end()) + 1;
-}
-
 TEST(HandleCutting, TheMeshBecomesAPieceOfGenusZeroWithTheSameTriangles) {
   for (const Mesh& mesh : meshes()) {
     SCOPED_TRACE(mesh.points.cols());
@@ -75,7 +64,8 @@ TEST(HandleCutting, TheMeshBecomesAPieceOfGenusZeroWithTheSameTriangles) {
     EXPECT_TRUE(
         checkTopology(cut.triangles, static_cast<std::size_t>(cut.points.cols())).isOpenSurface());
     EXPECT_EQ(cut.points.leftCols(mesh.points.cols()), mesh.points);
-    EXPECT_EQ(vertexCount(cut), mesh.points.cols());
+    EXPECT_EQ(*std::max_element(cut.vertex_of.begin(), cut.vertex_of.end()) + 1,
+              mesh.points.cols());
     Triangles back = cut.triangles;
     for (Index& v : back.reshaped()) {
       const Index copy = v;

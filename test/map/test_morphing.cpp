@@ -5,15 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-
 namespace spherical_param {
 namespace {
 

@@ -4,11 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

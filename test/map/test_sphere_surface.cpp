@@ -4,14 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 

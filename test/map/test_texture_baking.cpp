@@ -3,14 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdlib>
-#include <limits>
-#include <map>
-#include <set>
-
 namespace spherical_param {
 namespace {
 

@@ -4,11 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <iterator>
-#include <vector>
-
 namespace spherical_param {
 namespace {
 
