@@ -182,7 +182,7 @@ void cutOpenings(Positions& directions, Triangles& triangles,
                        [&](Index v) { return sides[v] == Side::Surface; });
   });
   keepManifoldPart(triangles, count);
-  directions = columnsOf(moved, compact(triangles, directions.cols()));
+  directions = moved(Eigen::all, compact(triangles, directions.cols()));
 }
 
 }  // namespace spherical_param::internal

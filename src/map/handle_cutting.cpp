@@ -227,8 +227,7 @@ private:
         cut_.triangles.data()[sideAfter(s)] = copy;
       }
     }
-    const Positions vertices = cut_.points.leftCols(vertex_count_);
-    cut_.points = internal::columnsOf(vertices, cut_.vertex_of);
+    cut_.points = Positions(cut_.points(Eigen::all, cut_.vertex_of));
   }
 
   Triangles original_;

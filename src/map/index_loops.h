@@ -34,9 +34,4 @@ Value sumOfIndices(std::size_t count, int threads, const Value& zero, const Term
                     [&](Index i, Value& sum) { sum += term(i); });
 }
 
-/// The column of each of some indices: `columns` in their order.
-inline Positions columnsOf(const Positions& columns, const std::vector<Index>& indices) {
-  return columns(Eigen::all, indices);
-}
-
 }  // namespace spherical_param::internal

@@ -16,10 +16,10 @@ namespace spherical_param::internal {
 ///
 /// \param what the public function and its option, for the message.
 template <typename Enum>
-void checkEnum(const char* what, Enum value, Enum last) {
+void checkEnum(const std::string& what, Enum value, Enum last) {
   const auto number = static_cast<long long>(value);
   if (number < 0 || number > static_cast<long long>(last))
-    throw InvalidInput(std::string(what) + " = " + std::to_string(number) +
+    throw InvalidInput(what + " = " + std::to_string(number) +
                        " is not a value of its type; use one of its enumerators");
 }
 
@@ -57,7 +57,7 @@ inline void checkUnitVectors(const char* function, const Positions& sphere, doub
 
 /// Throws InvalidInput for an atlas that makeTextureAtlas() cannot have made.
 inline void checkAtlas(const char* function, const TextureAtlas& atlas) {
-  checkEnum((std::string(function) + ": chart").c_str(), atlas.chart, SphereChart::CubeMap);
+  checkEnum(std::string(function) + ": chart", atlas.chart, SphereChart::CubeMap);
   checkTriangles(function, atlas.triangles, static_cast<Eigen::Index>(atlas.vertices.size()));
   checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
   if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||

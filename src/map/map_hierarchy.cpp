@@ -332,7 +332,7 @@ private:
       v = rank[v];
     for (MapMesh& mesh : hierarchy_.meshes)
       mesh.triangles = renumbered(mesh.triangles, rank);
-    hierarchy_.points = columnsOf(points_, order);
+    hierarchy_.points = points_(Eigen::all, order);
   }
 
   struct Removed {
@@ -363,7 +363,7 @@ MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangl
                                const FractionReport& report) {
   const int most = threadCount(threads, columnCount(points));
   const Indexed<Index> order = breadthFirst(triangles, columnCount(points), most);
-  const Positions scaled = columnsOf(scaledToUnit(points), order);
+  const Positions scaled = scaledToUnit(points)(Eigen::all, order);
   MapHierarchy hierarchy =
       Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads, most).run(report);
   for (Index& v : hierarchy.order)

@@ -260,9 +260,9 @@ void morphOnOverlay(const SphereSurface& first, const SphereSurface& second,
   morph.second = positionsAt(second, overlay.second, threads);
   morph.triangles = triangulateFaces(overlay, first, second, morph);
   const std::vector<Index> used = internal::compact(morph.triangles, overlay.directions.cols());
-  morph.first = internal::columnsOf(morph.first, used);
-  morph.second = internal::columnsOf(morph.second, used);
-  morph.sphere = internal::columnsOf(overlay.directions, used);
+  morph.first = Positions(morph.first(Eigen::all, used));
+  morph.second = Positions(morph.second(Eigen::all, used));
+  morph.sphere = overlay.directions(Eigen::all, used);
   for (const Index v : used) {
     morph.first_places.push_back(overlay.first[v]);
     morph.second_places.push_back(overlay.second[v]);

@@ -338,8 +338,7 @@ SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std:
   const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
   const std::vector<Index> kept =
       internal::eliminateSamples(all.points, all.normals, count, surface.area());
-  SurfacePoints result{
-      internal::columnsOf(all.points, kept), internal::columnsOf(all.normals, kept), {}};
+  SurfacePoints result{all.points(Eigen::all, kept), all.normals(Eigen::all, kept), {}};
   for (const Index i : kept)
     result.locations.push_back(entry(all.locations, i));
   return result;
@@ -364,7 +363,7 @@ GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
     throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
                        " vertices are not those of an octahedral grid; use makeGridSphere()");
   const OctahedralSquare square(frequency);
-  return {side, internal::columnsOf(mesh.points, square.vertices())};
+  return {side, mesh.points(Eigen::all, square.vertices())};
 }
 
 ResampledMesh meshOfGeometryImage(const GeometryImage& image) {

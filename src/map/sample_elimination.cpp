@@ -79,8 +79,8 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   const double least =
       most * kBeta * (1.0 - std::pow(remaining / static_cast<double>(points.cols()), kGamma));
   const CellGrid grid(points, 2.0 * most);
-  const Positions sorted_points = columnsOf(points, grid.order());
-  const Positions sorted_normals = columnsOf(normals, grid.order());
+  const Positions sorted_points = points(Eigen::all, grid.order());
+  const Positions sorted_normals = normals(Eigen::all, grid.order());
   /// Calls visit(j, weight of the pair) for the samples that are near sample i.
   const auto for_each_near = [&](Index i, const auto& visit) {
     const Vector3d point = sorted_points.col(i);

@@ -287,7 +287,7 @@ private:
 };
 
 void checkOptions(const TextureAtlasOptions& options, const std::string& function) {
-  internal::checkEnum((function + ": chart").c_str(), options.chart, SphereChart::CubeMap);
+  internal::checkEnum(function + ": chart", options.chart, SphereChart::CubeMap);
   if (!(options.margin >= 0.0 && options.margin < 0.25))
     throw InvalidInput(function + ": margin is " + std::to_string(options.margin) +
                        "; give a fraction of the side of a face in [0, 0.25)");

@@ -37,9 +37,7 @@ TEST(GridSphere, IsAClosedMeshThatCoversTheSphereOnce) {
         least = std::min(least, area);
         most = std::max(most, area);
         // Those of the octahedron stay in their octant.
-        Eigen::Matrix3d corners;
-        for (Index k = 0; k < 3; ++k)
-          corners.col(k) = grid.directions.col(grid.triangles(k, t));
+        const Eigen::Matrix3d corners = grid.directions(Eigen::all, grid.triangles.col(t));
         for (Index axis = 0; axis < 3; ++axis)
           EXPECT_TRUE(kind == SphereGrid::Icosahedral ||
                       corners.row(axis).minCoeff() * corners.row(axis).maxCoeff() >= 0.0);

@@ -85,9 +85,7 @@ TEST(SphereSurface, LocatesDirectionsAsBruteForceDoes) {
       ASSERT_EQ(location.triangle, bruteForceTriangle(map, directions.col(i)));
       ASSERT_GE(location.weights.minCoeff(), 0.0);
       ASSERT_NEAR(location.weights.sum(), 1.0, 4e-16);
-      Eigen::Matrix3d corners;
-      for (Index k = 0; k < 3; ++k)
-        corners.col(k) = map.sphere.col(map.triangles(k, location.triangle));
+      const Eigen::Matrix3d corners = map.sphere(Eigen::all, map.triangles.col(location.triangle));
       const double longest = std::max({(corners.col(0) - corners.col(1)).squaredNorm(),
                                        (corners.col(1) - corners.col(2)).squaredNorm(),
                                        (corners.col(2) - corners.col(0)).squaredNorm()});
