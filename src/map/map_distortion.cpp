@@ -84,16 +84,6 @@ struct LinearMap {
   }
 };
 
-/// Area of the spherical triangle between the corners of an image, without sign: the solid angle
-/// (A. van Oosterom and J. Strackee, 1983).
-double areaOnSphere(const Vector3d& corner, const Sides& sides) {
-  const double determinant = corner.dot(sides.first.cross(sides.second));
-  // 1 + ab + bc + ca of unit vectors, by differences.
-  const double denominator = 4.0 - 0.5 * (sides.first.squaredNorm() + sides.second.squaredNorm() +
-                                          (sides.second - sides.first).squaredNorm());
-  return 2.0 * std::atan2(std::abs(determinant), denominator);
-}
-
 /// A triangle's value and its weight.
 using Weighted = std::pair<double, double>;
 
@@ -159,8 +149,15 @@ struct Meshes {
 
   Sides solid(Index t) const { return Sides(points, triangles, t, scale); }
   Sides flat(Index t) const { return Sides(sphere, triangles, t, 1.0); }
-  double areaOnSphere(Index t, const Sides& flat) const {
-    return spherical_param::areaOnSphere(sphere.col(triangles(0, t)), flat);
+  /// Area of the spherical triangle between the corners of an image, without sign: the solid angle
+  /// (A. van Oosterom and J. Strackee, 1983).
+  double areaOnSphere(Index t, const Sides& sides) const {
+    const Vector3d corner = sphere.col(triangles(0, t));
+    const double determinant = corner.dot(sides.first.cross(sides.second));
+    // 1 + ab + bc + ca of unit vectors, by differences.
+    const double denominator = 4.0 - 0.5 * (sides.first.squaredNorm() + sides.second.squaredNorm() +
+                                            (sides.second - sides.first).squaredNorm());
+    return 2.0 * std::atan2(std::abs(determinant), denominator);
   }
 };
 

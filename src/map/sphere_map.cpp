@@ -35,11 +35,6 @@ using internal::MapHierarchy;
 using internal::MapMesh;
 using internal::MapRows;
 
-void checkOptions(const SphereMapOptions& options) {
-  internal::checkRange("computeSphereMap: area_weight", options.area_weight, 0.0, 1.0);
-  internal::checkRange("computeSphereMap: sweeps", options.sweeps, 0, 1000);
-}
-
 /// Throws for a mesh that cannot be mapped; caps its openings.
 /// \return what is mapped, if that is not the mesh itself
 std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Triangles& triangles,
@@ -281,7 +276,8 @@ private:
 
 SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options) {
-  checkOptions(options);
+  internal::checkRange("computeSphereMap: area_weight", options.area_weight, 0.0, 1.0);
+  internal::checkRange("computeSphereMap: sweeps", options.sweeps, 0, 1000);
   const std::optional<internal::CappedMesh> capped =
       checkMesh(points, triangles, start, options.threads);
   const internal::FractionReport report = internal::reportOf(options, "map");
