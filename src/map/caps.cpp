@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {

@@ -3,7 +3,6 @@
 #include "rows.h"
 
 #include <cstddef>
-#include <vector>
 
 namespace spherical_param::internal {
 

@@ -4,7 +4,6 @@
 #include "progress.h"
 #include "spherical_param/types.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -16,7 +16,6 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>

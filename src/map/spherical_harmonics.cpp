@@ -5,7 +5,6 @@
 #include "pi.h"
 #include "spherical_param/errors.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
