@@ -337,7 +337,7 @@ SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std:
     throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
   const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
   const std::vector<Index> kept =
-      internal::eliminateSamples(all.points, all.normals, count, surface.area());
+      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
   SurfacePoints result{all.points(Eigen::all, kept), all.normals(Eigen::all, kept), {}};
   for (const Index i : kept)
     result.locations.push_back(entry(all.locations, i));

@@ -72,7 +72,7 @@ private:
 }  // namespace
 
 std::vector<Index> eliminateSamples(const Positions& points, const Positions& normals,
-                                    std::size_t count, double area) {
+                                    std::size_t count, double area, int threads) {
   const double remaining = static_cast<double>(count);
   // The largest radius of disks of which this number fits on the area, and the least that counts.
   const double most = std::sqrt(area / (2.0 * std::sqrt(3.0) * remaining));
@@ -97,7 +97,7 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   };
 
   Indexed<double> weights(columnCount(points));
-  forEachIndex(weights.size(), 0, [&](Index i) {
+  forEachIndex(weights.size(), threads, [&](Index i) {
     double sum = 0.0;
     for_each_near(i, [&](Index, double weight) { sum += weight; });
     weights[i] = sum;

@@ -19,6 +19,6 @@ namespace spherical_param::internal {
 /// \return count indices, of points that are near each other in space mostly near in the order. The
 /// same for any number of threads. Cost: O(n log n).
 std::vector<Index> eliminateSamples(const Positions& points, const Positions& normals,
-                                    std::size_t count, double area);
+                                    std::size_t count, double area, int threads);
 
 }  // namespace spherical_param::internal
