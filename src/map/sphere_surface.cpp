@@ -106,7 +106,7 @@ struct SphereSurface::Data {
   }
 
   SphereLocation locate(const Vector3d& direction) const {
-    const SphereLocation location = locator.locate(direction);
+    SphereLocation location = locator.locate(direction);
     if (location.triangle < 0)
       throw ComputeError(
           "SphereSurface: no triangle holds a direction, as coordinates on the sphere are too "
