@@ -66,9 +66,21 @@ public:
   Index vertex(Index triangle, int corner) const {
     return vertices_[triangle][static_cast<std::size_t>(corner)];
   }
+  /// The ends of the side opposite to `corner`.
+  std::array<Index, 2> side(Index triangle, int corner) const {
+    return {vertex(triangle, (corner + 1) % 3), vertex(triangle, (corner + 2) % 3)};
+  }
   /// The triangle across the side opposite to `corner`.
   Index neighbor(Index triangle, int corner) const {
     return neighbors_[triangle][static_cast<std::size_t>(corner)];
+  }
+  /// The vertices of each of some triangles.
+  template <typename Indices>
+  std::vector<Index> verticesOf(const Indices& triangles) const {
+    std::vector<Index> all;
+    for (const Index t : triangles)
+      all.insert(all.end(), vertices(t).begin(), vertices(t).end());
+    return all;
   }
   int cornerOf(Index triangle, Index v) const { return placeOf(v, vertices_[triangle]); }
   /// The corner of neighbor(triangle, corner) that is opposite to the common side.

@@ -39,7 +39,8 @@ public:
     surface_.begin(is_open_.size(), std::move(faces));
   }
 
-  bool run(const Removal& most) {
+  /// \see clearIntersections
+  std::optional<Removal> run(const Removal& most, OpenMesh& result) {
     const bool is_closed = std::count(is_open_.begin(), is_open_.end(), std::uint8_t{1}) == 0;
     for (std::size_t next = 0; next < due_.size();) {
       const Index t = due_[next];
@@ -49,19 +50,13 @@ public:
         ++next;
       else if (!retriangulate(t) && !(is_closed && may_take && takeOutNear(t, -1)) &&
                !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
-        return false;
+        return std::nullopt;
     }
-    return true;
-  }
-
-  const Removal& removal() const { return removal_; }
-
-  OpenMesh mesh() const {
-    OpenMesh result{mesh_.triangles(), {}};
+    result = {mesh_.triangles(), {}};
     for (Index t = 0; t < mesh_.size(); ++t)
       if (isUsed(t))
         result.is_open.push_back(is_open_[t]);
-    return result;
+    return removal_;
   }
 
 private:
@@ -131,12 +126,12 @@ private:
 
   // --- 1. Other triangulations
 
-  using Sides = std::vector<std::array<Index, 2>>;  ///< by their ends
+  using Side = std::array<Index, 2>;  ///< its ends
 
   /// A triangulation of a region.
   struct Triangulation {
-    Sides flipped;  ///< one after the other, from the first triangulation on
-    Sides sides;    ///< within the region
+    std::vector<Side> flipped;  ///< one after the other, from the first triangulation on
+    std::vector<Side> sides;    ///< within the region
   };
 
   /// Takes the first triangulation of the triangles within two steps that has fewer intersections.
@@ -150,20 +145,20 @@ private:
     std::vector<Triangulation> due{{{}, sidesIn(region)}};
     for (std::size_t i = 0; i < due.size(); ++i) {
       const Triangulation from = due[i];
-      for (const auto& [v, w] : from.sides) {
+      for (const Side& side : from.sides) {
         ++triangulations_;
         begin();
         int change = 0;
-        for (const auto& [a, b] : from.flipped)
-          change += flipSide(region, a, b).value_or(0);
-        const std::optional<int> last = flipSide(region, v, w);
+        for (const Side& flipped : from.flipped)
+          change += flipSide(region, flipped).value_or(0);
+        const std::optional<int> last = flipSide(region, side);
         if (last && change + *last < 0) {
           commit();
           return true;
         }
         if (last && due.size() < most_triangulations && seen.insert(trianglesOf(region)).second) {
           due.push_back({from.flipped, sidesIn(region)});
-          due.back().flipped.push_back({v, w});
+          due.back().flipped.push_back(side);
         }
         rollBack();
       }
@@ -198,20 +193,20 @@ private:
     return triangles;
   }
 
-  Sides sidesIn(const std::vector<Index>& region) const {
-    Sides sides;
+  std::vector<Side> sidesIn(const std::vector<Index>& region) const {
+    std::vector<Side> sides;
     for (const Index t : region)
       for (int k = 0; k < 3; ++k)
         if (const Index o = mesh_.neighbor(t, k);
             t < o && std::find(region.begin(), region.end(), o) != region.end())
-          sides.push_back({mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3)});
+          sides.push_back(mesh_.side(t, k));
     return sides;
   }
 
-  std::optional<int> flipSide(const std::vector<Index>& region, Index v, Index w) {
+  std::optional<int> flipSide(const std::vector<Index>& region, const Side& side) {
     for (const Index t : region)
       for (int k = 0; k < 3; ++k)
-        if (mesh_.vertex(t, (k + 1) % 3) == v && mesh_.vertex(t, (k + 2) % 3) == w)
+        if (mesh_.side(t, k) == side)
           return flip(t, k);
     return std::nullopt;
   }
@@ -250,9 +245,7 @@ private:
   /// Takes out the vertex of a triangle, or of those that it intersects, that leaves the fewest
   /// intersections. Returns whether one changes their number by at most `most`.
   bool takeOutNear(Index t, int most) {
-    std::vector<Index> vertices;
-    for (const Index u : withIntersecting(t))
-      vertices.insert(vertices.end(), mesh_.vertices(u).begin(), mesh_.vertices(u).end());
+    std::vector<Index> vertices = mesh_.verticesOf(withIntersecting(t));
     sortUnique(vertices);
     std::optional<std::pair<Cost, Index>> best;
     for (const Index v : vertices) {
@@ -303,7 +296,7 @@ private:
   }
 
   /// Whether the surface around a vertex is one fan.
-  bool isOneFan(Index v) const { return fansOfSurface(mesh_, is_open_, v) == 1; }
+  bool isOneFan(Index v) const { return fansAt(mesh_, is_open_, v, false).size() == 1; }
 
   /// The triangle and corner of the side of a vertex to flip next: fewest intersections, then the
   /// shortest new side; -1 of none.
@@ -368,21 +361,15 @@ void leaveOneFan(std::size_t vertices, OpenMesh& mesh) {
     due.pop_back();
     if (closed.triangleAt(v) < 0)
       continue;
-    std::vector<Index> around;
-    closed.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const auto is_open = [&](Index t) { return mesh.is_open[t] != 0; };
-    std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_open), around.end());
-    std::vector<std::vector<Index>> fans(1);
-    for (const Index t : around)
-      if (!is_open(t))
-        fans.back().push_back(t);
-      else if (!fans.back().empty())
-        fans.emplace_back();
-    for (const std::vector<Index>& fan : withoutLargest(std::move(fans)))
-      for (const Index t : fan) {
+    const std::vector<Fan> fans = fansAt(closed, mesh.is_open, v, false);
+    if (fans.size() < 2)
+      continue;
+    for (const Fan& fan : withoutLargest(fans)) {
+      for (const Index t : fan)
         mesh.is_open[t] = 1;
-        due.insert(due.end(), closed.vertices(t).begin(), closed.vertices(t).end());
-      }
+      const std::vector<Index> freed = closed.verticesOf(fan);
+      due.insert(due.end(), freed.begin(), freed.end());
+    }
   }
 }
 
@@ -409,11 +396,7 @@ std::optional<Removal> clearIntersections(const Positions& points,
   sortUnique(triangles);
   if (triangles.size() > most.triangles + kMostOfVertex * most.vertices)
     return std::nullopt;
-  Remover remover(points, mesh, std::move(triangles));
-  if (!remover.run(most))
-    return std::nullopt;
-  mesh = remover.mesh();
-  return remover.removal();
+  return Remover(points, mesh, std::move(triangles)).run(most, mesh);
 }
 
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,

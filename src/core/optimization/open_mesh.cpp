@@ -53,6 +53,13 @@ const Candidate* leastCrossing(const std::vector<Candidate>& candidates, const C
   return best;
 }
 
+/// The triangles around a vertex, counter-clockwise.
+Fan trianglesAround(const SphereMesh& mesh, Index v) {
+  Fan around;
+  mesh.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+  return around;
+}
+
 bool isOver(const OpenPlaces& openings, const std::array<Index, 3>& corners) {
   return openings.isOpen(corners[0], corners[1], corners[2]);
 }
@@ -75,14 +82,14 @@ public:
         faces.push_back(face(t, mesh_.vertices(t)));
     surface_.begin(is_open_.size(), std::move(faces));
     for (const Index v : verticesOfOpen())
-      if (isBare(v))
+      if (fanCount(v) == 0)
         attach(v);
     std::vector<Index> due = verticesOfOpen();
     while (!due.empty()) {
       const Index v = due.back();
       due.pop_back();
       // What is closed may leave other vertices pinched, and this one, too.
-      if (isPinched(v))
+      if (fanCount(v) > 1)
         for (const Index w : release(v))
           due.push_back(w);
     }
@@ -98,44 +105,14 @@ private:
   std::vector<Index> verticesOfOpen() const {
     std::vector<Index> vertices;
     for (Index t = 0; t < mesh_.size(); ++t)
-      for (int k = 0; isOpen(t) && k < 3; ++k)
-        vertices.push_back(mesh_.vertex(t, k));
+      if (isOpen(t))
+        vertices.insert(vertices.end(), mesh_.vertices(t).begin(), mesh_.vertices(t).end());
     sortUnique(vertices);
     return vertices;
   }
 
-  /// The triangles around a vertex, counter-clockwise.
-  std::vector<Index> trianglesAround(Index v) const {
-    std::vector<Index> around;
-    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    return around;
-  }
-
-  /// Open triangles around a vertex that follow each other, counter-clockwise.
-  using Run = std::vector<Index>;
-
-  /// All runs around a vertex with triangles on the surface.
-  std::vector<Run> runsAt(Index v) const {
-    std::vector<Index> around = trianglesAround(v);
-    std::rotate(around.begin(),
-                std::find_if(around.begin(), around.end(), [&](Index t) { return !isOpen(t); }),
-                around.end());
-    std::vector<Run> runs;
-    for (std::size_t i = 1; i < around.size(); ++i) {
-      if (!isOpen(around[i]))
-        continue;
-      if (!isOpen(around[i - 1]))
-        runs.emplace_back();
-      runs.back().push_back(around[i]);
-    }
-    return runs;
-  }
-
-  /// Whether no triangle of a vertex is on the surface.
-  bool isBare(Index v) const { return fansOfSurface(mesh_, is_open_, v) == 0; }
-
-  /// Whether the surface around a vertex is more than one fan.
-  bool isPinched(Index v) const { return fansOfSurface(mesh_, is_open_, v) > 1; }
+  /// Number of fans of the surface at a vertex.
+  std::size_t fanCount(Index v) const { return fansAt(mesh_, is_open_, v, false).size(); }
 
   /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
   /// the surface: the nearest place where that intersects nothing, edges first.
@@ -143,10 +120,10 @@ private:
     std::vector<Place> edges;
     for (Index t = 0; t < mesh_.size(); ++t)
       for (int k = 0; isOpen(t) && k < 3; ++k)
-        if (!isOpen(mesh_.neighbor(t, k)))
-          edges.push_back(
-              {length(v, mesh_.vertex(t, (k + 1) % 3)) + length(v, mesh_.vertex(t, (k + 2) % 3)), t,
-               k});
+        if (!isOpen(mesh_.neighbor(t, k))) {
+          const auto [a, b] = mesh_.side(t, k);
+          edges.push_back({length(v, a) + length(v, b), t, k});
+        }
     keepNearest(edges);
     int least = 0;
     const Place* edge = leastCrossing(
@@ -155,8 +132,7 @@ private:
       close(smallestAt(v));
       return;
     }
-    const Index a = mesh_.vertex(edge->triangle, (edge->corner + 1) % 3);
-    const Index b = mesh_.vertex(edge->triangle, (edge->corner + 2) % 3);
+    const auto [a, b] = mesh_.side(edge->triangle, edge->corner);
     const std::optional<Index> cover = least > 0 ? coverOf(v) : std::nullopt;
     if (!takeOut(v))
       close(smallestAt(v));
@@ -171,10 +147,10 @@ private:
   std::optional<Index> coverOf(Index v) const {
     std::vector<Place> covers;
     for (Index t = 0; t < mesh_.size(); ++t)
-      if (!isOpen(t))
-        covers.push_back({length(v, mesh_.vertex(t, 0)) + length(v, mesh_.vertex(t, 1)) +
-                              length(v, mesh_.vertex(t, 2)),
-                          t, -1});
+      if (!isOpen(t)) {
+        const auto& [a, b, c] = mesh_.vertices(t);
+        covers.push_back({length(v, a) + length(v, b) + length(v, c), t, -1});
+      }
     keepNearest(covers);
     for (const Place& place : covers)
       if (crossingsAt(v, place, 0) == 0)
@@ -219,7 +195,7 @@ private:
   }
 
   Index smallestAt(Index v) const {
-    const std::vector<Index> around = trianglesAround(v);
+    const Fan around = trianglesAround(mesh_, v);
     return *std::min_element(around.begin(), around.end(),
                              [&](Index t, Index u) { return perimeter(t) < perimeter(u); });
   }
@@ -227,26 +203,22 @@ private:
   /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
   /// intersects nothing. Returns the vertices that this concerns.
   std::vector<Index> release(Index v) {
-    std::vector<Run> gaps = runsAt(v);
+    std::vector<Fan> gaps = fansAt(mesh_, is_open_, v, true);
     std::stable_sort(gaps.begin(), gaps.end(),
-                     [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
-    for (Run& gap : gaps)
+                     [&](const Fan& a, const Fan& b) { return widthAt(v, a) < widthAt(v, b); });
+    for (Fan& gap : gaps)
       trim(v, gap);
     int least = 0;
-    const auto count_crossings = [&](const Run& run, int most) {
+    const auto count_crossings = [&](const Fan& run, int most) {
       int count = 0;
       for (const Index t : run)
         count += crossings(mesh_.vertices(t), t, most - count);
       return count;
     };
-    const Run* gap = leastCrossing(gaps, count_crossings, least);
-    std::vector<Index> vertices;
-    for (const Index t : *gap) {
+    const Fan* gap = leastCrossing(gaps, count_crossings, least);
+    for (const Index t : *gap)
       close(t);
-      for (int k = 0; k < 3; ++k)
-        vertices.push_back(mesh_.vertex(t, k));
-    }
-    return vertices;
+    return mesh_.verticesOf(*gap);
   }
 
   /// Number of triangles of the surface, but for `without`, that one that is not on it would
@@ -260,7 +232,7 @@ private:
   }
 
   /// Distance of the first and the last neighbour of a run.
-  double widthAt(Index v, const Run& run) const {
+  double widthAt(Index v, const Fan& run) const {
     return length(mesh_.vertex(run.front(), (mesh_.cornerOf(run.front(), v) + 1) % 3),
                   mesh_.vertex(run.back(), (mesh_.cornerOf(run.back(), v) + 2) % 3));
   }
@@ -272,7 +244,7 @@ private:
 
   /// Flips the edges from a vertex into a run of it, as far as that goes; leaves the rest of the
   /// run.
-  void trim(Index v, Run& run) {
+  void trim(Index v, Fan& run) {
     for (auto t = run.begin(); t + 1 < run.end();)
       // The edge to the next triangle is opposite to the corner after v.
       if (!mesh_.flip(*t, (mesh_.cornerOf(*t, v) + 1) % 3)) {
@@ -316,8 +288,8 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
       for (int k = 0; k < 3; ++k) {
         const Index t = piece[head];
         const Index next = mesh.neighbor(t, k);
-        has_loop =
-            has_loop || openings.isRim(mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3));
+        const auto [v, w] = mesh.side(t, k);
+        has_loop = has_loop || openings.isRim(v, w);
         if (is_open(next) && seen.insert(next))
           piece.push_back(next);
       }
@@ -327,13 +299,20 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
   return found;
 }
 
-int fansOfSurface(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v) {
-  int changes = 0;
-  mesh.forEachAround(v, [&](Index t, int corner) {
-    changes += is_open[t] != is_open[mesh.neighbor(t, (corner + 1) % 3)] ? 1 : 0;
-  });
-  const bool is_inside = changes == 0 && is_open[mesh.triangleAt(v)] == 0;
-  return is_inside ? 1 : changes / 2;
+std::vector<Fan> fansAt(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v,
+                        bool of_open) {
+  const auto is_other = [&](Index t) { return (is_open[t] != 0) != of_open; };
+  Fan around = trianglesAround(mesh, v);
+  std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_other), around.end());
+  std::vector<Fan> fans;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (is_other(around[i]))
+      continue;
+    if (i == 0 || is_other(around[i - 1]))
+      fans.emplace_back();
+    fans.back().push_back(around[i]);
+  }
+  return fans;
 }
 
 OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings) {
@@ -349,8 +328,7 @@ std::vector<Index> trianglesOfSurface(const OpenMesh& mesh) {
 }
 
 std::size_t surfaceCount(const OpenMesh& mesh) {
-  return static_cast<std::size_t>(
-      std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
+  return trianglesOfSurface(mesh).size();
 }
 
 Triangles surfaceOf(const OpenMesh& mesh) {

@@ -14,10 +14,15 @@ namespace spherical_param::internal {
 /// Open triangles that others do not connect to a loop: they are part of the surface.
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);
 
-/// Number of fans that the triangles around a vertex form which are not over openings.
+/// Triangles around a vertex that follow each other, counter-clockwise.
+using Fan = std::vector<Index>;
+
+/// The fans at a vertex of the triangles over openings, or of those of the surface.
 ///
 /// \param is_open for each triangle, 1 if it is over an opening.
-int fansOfSurface(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v);
+/// \param of_open which of them.
+std::vector<Fan> fansAt(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v,
+                        bool of_open);
 
 /// A closed mesh with openings.
 struct OpenMesh {

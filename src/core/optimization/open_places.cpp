@@ -6,7 +6,7 @@ namespace spherical_param::internal {
 
 OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
     : points_(&points), nearest_(graph.size(), -1), is_in_loop_(graph.size(), 0),
-      spacing_(openings.spacing.begin(), openings.spacing.end()) {
+      spacing_(openings.spacing) {
   std::vector<Index> ring;
   const auto add = [&](Index v, Index opening) {
     if (nearest_[v] >= 0)

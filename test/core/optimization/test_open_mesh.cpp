@@ -7,6 +7,17 @@
 namespace spherical_param::test {
 namespace {
 
+/// Opened within loops of a surface, of some point spacing; the graph has no edges.
+OpenMesh opened(const Positions& points, const Triangles& triangles, double spacing,
+                const std::vector<Index>& loop) {
+  Graph graph;
+  graph.offsets.assign(columnCount(points) + 1, 0);
+  Openings openings;
+  openings.spacing.assign(columnCount(points), spacing);
+  openings.openings.emplace_back().loop = loop;
+  return openMesh(points, triangles, OpenPlaces(points, graph, openings));
+}
+
 /// A double pyramid over a ring of n points at z = 0, with tips n and n + 1.
 struct DoublePyramid {
   explicit DoublePyramid(Index n) : points(3, n + 2), triangles(3, 2 * n) {
@@ -18,20 +29,10 @@ struct DoublePyramid {
     }
     points.col(n) << 0.0, 0.0, 0.5;
     points.col(n + 1) << 0.0, 0.0, -0.5;
-    graph.offsets.assign(static_cast<std::size_t>(n) + 3, 0);
-    openings.spacing.assign(static_cast<std::size_t>(n) + 2, 0.6);
-  }
-
-  OpenMesh open(std::vector<std::vector<Index>> loops) {
-    for (std::vector<Index>& loop : loops)
-      openings.openings.emplace_back().loop = std::move(loop);
-    return openMesh(points, triangles, OpenPlaces(points, graph, openings));
   }
 
   Positions points;
   Triangles triangles;
-  Graph graph;
-  Openings openings;
 };
 
 TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
@@ -40,7 +41,8 @@ TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
   DoublePyramid pyramid(4);
   pyramid.points.leftCols(4) << 1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0;
   pyramid.points.col(4) << 0.25, 0.25, -0.25;
-  const Triangles surface = internal::surfaceOf(pyramid.open({{0, 1, 2, 3, 4}}));
+  const Triangles surface =
+      internal::surfaceOf(opened(pyramid.points, pyramid.triangles, 0.6, {0, 1, 2, 3, 4}));
   EXPECT_EQ(surface.cols(), 6);
   EXPECT_TRUE(findSelfIntersections(pyramid.points, surface).empty());
   const MeshTopology topology = checkTopology(surface, 6);
@@ -87,14 +89,8 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
     loop.push_back(v);
   const auto m = static_cast<Index>(all.size());
   const Triangles triangles = Eigen::Map<const Triangles>(all[0].data(), 3, m);
-  Graph graph;
-  graph.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
-  Openings openings;
-  openings.spacing.assign(static_cast<std::size_t>(points.cols()), 1e-3);
-  openings.openings.emplace_back().loop = loop;
-  const Triangles surface =
-      internal::surfaceOf(openMesh(points, triangles, OpenPlaces(points, graph, openings)));
-  const MeshTopology topology = checkTopology(surface, static_cast<std::size_t>(points.cols()));
+  const Triangles surface = internal::surfaceOf(opened(points, triangles, 1e-3, loop));
+  const MeshTopology topology = checkTopology(surface, columnCount(points));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.unused_vertices.empty());
   // A few vertices find no such triangle, or cannot be taken out: theirs cross many.
@@ -106,18 +102,21 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
 
 TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
   // The edges from the upper tip to 0 and to 4 are long; only the first is in a loop.
-  DoublePyramid pyramid(8);
-  pyramid.openings.spacing.assign(10, 1.0);
+  const DoublePyramid pyramid(8);
+  Openings openings;
+  openings.spacing.assign(10, 1.0);
   for (const Index v : {0, 4, 8})
-    pyramid.openings.spacing[v] = 0.3;
-  pyramid.openings.openings.emplace_back().loop = {0, 1, 8};
+    openings.spacing[v] = 0.3;
+  openings.openings.emplace_back().loop = {0, 1, 8};
+  // All are near each other.
+  Graph graph;
   for (Index v = 0; v < 10; ++v) {
     for (Index w = 0; w < 10; ++w)
       if (v != w)
-        pyramid.graph.neighbors.push_back(w);
-    pyramid.graph.offsets[static_cast<std::size_t>(v) + 1] = pyramid.graph.neighbors.size();
+        graph.neighbors.push_back(w);
+    graph.endRow();
   }
-  OpenPlaces places(pyramid.points, pyramid.graph, pyramid.openings);
+  OpenPlaces places(pyramid.points, graph, openings);
   const SphereMesh mesh(pyramid.triangles, 10);
   const std::vector<Index> found = trianglesWithoutLoop(mesh, places);
   EXPECT_EQ(std::set<Index>(found.begin(), found.end()), (std::set<Index>{6, 8}));
