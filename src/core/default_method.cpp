@@ -190,7 +190,7 @@ private:
   }
 
   double energy(const Triangles& triangles) const {
-    return meshEnergy(points_, triangles, graph_, openings_.places());
+    return EnergyMesh(points_, triangles, graph_, 1, openings_.places()).energy();
   }
 
   const Positions& points_;

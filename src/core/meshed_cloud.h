@@ -3,7 +3,6 @@
 #include "embedding.h"
 #include "graph.h"
 #include "mesh_optimization.h"
-#include "smoothed_mesh.h"
 #include "spherical_param/result.h"
 
 #include <vector>

@@ -15,26 +15,33 @@ namespace tuned = optimization_constants;
 
 EnergyMesh::EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
                        int threads, const OpenPlaces* openings, const FractionReport& report)
-    : points_(&points), graph_(graph), openings_(openings),
-      threads_(threadCount(threads, columnCount(triangles))),
+    : points_(&points), graph_(graph), threads_(threadCount(threads, columnCount(triangles))),
       mesh_(triangles, columnCount(points), threads_), facets_(columnCount(triangles)) {
   const double lengths = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph.lengths.size());
-  setEnergy({});
+  energy_.openings = openings;
   updateAll(report);
 }
 
 RawFacet EnergyMesh::facetOf(Index a, Index b, Index c) const {
   RawFacet facet(points_->col(a), points_->col(b), points_->col(c));
-  if (openings_ != nullptr && openings_->isOpen(a, b, c))
+  if (energy_.openings != nullptr && energy_.openings->isOpen(a, b, c))
     facet.open();
   return facet;
 }
 
-void EnergyMesh::setEnergy(const SurfaceEnergy& energy) {
-  energy_ = energy;
-  energy_.openings = openings_;
+double EnergyMesh::energy() const {
+  double sum = 0.0;
+  for (Index t = 0; t < mesh_.size(); ++t) {
+    sum += energy_.cost(facets_[t].radius);
+    for (int k = 0; k < 3; ++k) {
+      const auto [v, w] = mesh_.side(t, k);
+      if (v < w)
+        sum += edge(v, w, facets_[t], facets_[mesh_.neighbor(t, k)]);
+    }
+  }
+  return sum / unit_;
 }
 
 void EnergyMesh::setPoints(const Positions& points) {
@@ -192,14 +199,11 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
 
 IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report) {
-  Triangles triangles = mesh.mesh().triangles();
-  Indexed<Index> surface;  // slots, by the columns that are left
+  Indexed<Index> surface;
   for (Index t = 0; t < mesh.mesh().size(); ++t)
-    if (!mesh.facet(t).isOpen()) {
-      triangles.col(surface.count()) = triangles.col(t);
+    if (!mesh.facet(t).isOpen())
       surface.push_back(t);
-    }
-  triangles.conservativeResize(3, surface.count());
+  const Triangles triangles = mesh.mesh().triangles()(Eigen::all, surface);
   Execution execution;
   execution.threads = mesh.threads();
   if (report)
@@ -213,25 +217,6 @@ IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
     u = surface[u];
   }
   return found;
-}
-
-double meshEnergy(const Positions& points, const Triangles& triangles, const Graph& graph,
-                  const OpenPlaces* openings) {
-  const EnergyMesh of(points, triangles, graph, 1, openings);
-  SurfaceEnergy energy;
-  energy.openings = openings;
-  double sum = 0.0;
-  for (Index t = 0; t < of.mesh().size(); ++t) {
-    sum += energy.cost(of.facet(t).radius);
-    for (int k = 0; k < 3; ++k) {
-      const Index v = of.mesh().vertex(t, (k + 1) % 3);
-      const Index w = of.mesh().vertex(t, (k + 2) % 3);
-      if (v < w)
-        sum += energy.edge(v, w, points.col(v), points.col(w), of.facet(t),
-                           of.facet(of.mesh().neighbor(t, k)));
-    }
-  }
-  return sum / of.unit();
 }
 
 bool isGain(double change) {

@@ -35,7 +35,13 @@ public:
   const Facet& facet(Index t) const { return facets_[t]; }
   RawFacet facetOf(Index a, Index b, Index c) const;
 
-  void setEnergy(const SurfaceEnergy& energy);
+  void setEnergy(SurfaceEnergy::Bend bend = SurfaceEnergy::Bend::Angle,
+                 double mu = optimization_constants::kMu) {
+    energy_.bend = bend;
+    energy_.mu = mu;
+  }
+  /// That of the whole mesh [unit()].
+  double energy() const;
   /// Other points, or other places of the openings.
   void setPoints(const Positions& points);
   /// Other triangles, as many.
@@ -79,7 +85,6 @@ private:
 
   const Positions* points_;
   const Graph& graph_;
-  const OpenPlaces* openings_;
   int threads_;
   SphereMesh mesh_;
   SurfaceEnergy energy_;
@@ -97,12 +102,6 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
 /// if more than `most` triangles intersect. Open triangles do not count.
 IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report);
-
-/// The energy of a closed mesh [mean length of the graph's edges].
-///
-/// \param openings of the surface; nullptr: it is closed.
-double meshEnergy(const Positions& points, const Triangles& triangles, const Graph& graph,
-                  const OpenPlaces* openings);
 
 /// Whether a change of the energy is a gain beyond rounding [EnergyMesh::unit()].
 bool isGain(double change);

@@ -4,9 +4,6 @@
 
 namespace spherical_param {
 
-/// \addtogroup smoothing
-/// @{
-
 /// Low-pass filters for noise. With the uniform Laplacian of the mesh (the mean of the neighbours
 /// minus the point), whose frequencies k lie in [0, 3/2], each multiplies a part of frequency k by
 /// a gain.
@@ -50,7 +47,5 @@ struct Smoothing {
 /// even spread. A volume near 0 cannot be restored (see volume_after).
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options, int threads = 0);
-
-/// @}
 
 }  // namespace spherical_param

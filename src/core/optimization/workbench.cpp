@@ -11,8 +11,12 @@ Workbench::Workbench(const Positions& points, const Triangles& triangles, const 
     : report(reportOf(execution, "optimization")),
       openings(options.openings != nullptr ? std::optional(*options.openings) : std::nullopt),
       mesh(points, triangles, graph, execution.threads, openings ? &*openings : nullptr, report),
-      flips(mesh), ruins(mesh, flips, options.seed), local(mesh), time_left_(execution.time_limit),
-      share_(options.share) {
+      flips(mesh), ruins(mesh, flips, options.seed), local(mesh), time_left_(execution.time_limit) {
+  namespace tuned = optimization_constants;
+  const auto of_part =
+      static_cast<std::size_t>(options.share * static_cast<double>(tuned::kMaxWork));
+  max_work_ = std::min(tuned::kMaxWorkOfPoint * (1000 + columnCount(points)),
+                       std::max(of_part, tuned::kMinWork) + columnCount(points));
   renewWork();
 }
 
@@ -38,12 +42,7 @@ bool Workbench::mayRepair(std::size_t divisor) {
 }
 
 void Workbench::renewWork() {
-  namespace tuned = optimization_constants;
   first_work_ = work();
-  const std::size_t points = columnCount(mesh.points());
-  const auto of_part = static_cast<std::size_t>(share_ * static_cast<double>(tuned::kMaxWork));
-  max_work_ = std::min(tuned::kMaxWorkOfPoint * (1000 + points),
-                       std::max(of_part, tuned::kMinWork) + points);
   local.limitWork(max_work_);
 }
 

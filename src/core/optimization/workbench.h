@@ -56,7 +56,6 @@ private:
   static constexpr double kGrace = 0.1;
 
   TimeLeft time_left_;
-  double share_;                ///< of the work
   std::size_t first_work_ = 0;  ///< before renewWork()
   std::size_t max_work_ = 0;    ///< since then
 };

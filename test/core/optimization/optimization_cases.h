@@ -23,14 +23,14 @@ struct Case {
 };
 
 /// Flips at random, whatever the shape.
-inline Triangles scrambled(const Triangles& triangles, Index vertex_count, int flips,
-                           std::uint64_t seed) {
-  SphereMesh mesh(triangles, static_cast<std::size_t>(vertex_count));
+inline Case scrambled(Case of, int flips, std::uint64_t seed) {
+  SphereMesh mesh(of.triangles, columnCount(of.points));
   std::mt19937_64 random(seed);
   for (int i = 0; i < flips; ++i)
     mesh.flip(static_cast<Index>(random() % static_cast<std::uint64_t>(mesh.size())),
               static_cast<int>(random() % 3));
-  return mesh.triangles();
+  of.triangles = mesh.triangles();
+  return of;
 }
 
 /// Seen from the centroid: right for a star-shaped cloud, folded for others.
@@ -47,9 +47,7 @@ inline Case ellipsoid(Index n, double b, double c) {
 }
 
 inline Case scrambledEllipsoid(Index n, double c, int flips, std::uint64_t seed) {
-  Case result = ellipsoid(n, 0.8, c);
-  result.triangles = scrambled(result.triangles, n, flips, seed);
-  return result;
+  return scrambled(ellipsoid(n, 0.8, c), flips, seed);
 }
 
 /// A cloud of a noisy sphere with the triangles of the sphere.
@@ -77,10 +75,7 @@ inline Case tangle(Index n) {
 
 inline EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {
   EnergyMesh mesh(of.points, of.triangles, of.graph, 1);
-  SurfaceEnergy energy;
-  energy.bend = bend;
-  energy.mu = mu;
-  mesh.setEnergy(energy);
+  mesh.setEnergy(bend, mu);
   return mesh;
 }
 

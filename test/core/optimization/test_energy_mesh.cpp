@@ -31,6 +31,7 @@ TEST(EnergyMesh, TheChangeIsThatOfTheEnergyByItsDefinition) {
       std::mt19937_64 random(5);
       for (int round = 0; round < 3; ++round) {
         const double before = energyOf(of.points, mesh.mesh().triangles(), bend, 0.8);
+        EXPECT_NEAR(mesh.energy() * mesh.unit(), before, 1e-7 * before);
         mesh.begin();
         moveAtRandom(mesh, random);
         const double change = mesh.change() * mesh.unit();

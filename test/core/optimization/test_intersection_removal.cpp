@@ -32,8 +32,7 @@ struct Pierced {
 };
 
 TEST(IntersectionRemoval, OtherTrianglesKeepEveryVertex) {
-  Case of = ellipsoid(300, 0.8, 0.3);
-  of.triangles = scrambled(of.triangles, 300, 100, 2);
+  const Case of = scrambledEllipsoid(300, 0.3, 100, 2);
   ASSERT_FALSE(findSelfIntersections(of.points, of.triangles).empty());
   OpenMesh mesh = closedMesh(of.triangles);
   const std::optional<Removal> removal = clearIntersections(of.points, {20, 0}, mesh);

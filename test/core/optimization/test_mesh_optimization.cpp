@@ -20,8 +20,7 @@ void expectGuarantees(const Case& of, const MeshOptimization& result) {
 TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
   const auto expect_cube = [](int cells, int flips, std::uint64_t seed) {
     SCOPED_TRACE(seed);
-    Case of = radialStart(cubeGrid(cells + 1));
-    of.triangles = scrambled(of.triangles, static_cast<Index>(of.points.cols()), flips, seed);
+    const Case of = scrambled(radialStart(cubeGrid(cells + 1)), flips, seed);
     const MeshOptimization result = optimize(of);
     expectGuarantees(of, result);
     // 12 edges of length 1 are bent by a right angle; the 12 cells^2 triangles have half a diagonal
@@ -40,8 +39,7 @@ TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
   // The last is a disc whose two faces are, in the middle, half as far apart as their points.
   const Case hulls[] = {ellipsoid(800, 0.8, 0.6), ellipsoid(600, 1.0, 0.25 * sphereSpacing(600))};
   for (const Case& hull : hulls) {
-    Case of = hull;
-    of.triangles = scrambled(hull.triangles, static_cast<Index>(of.points.cols()), 2000, 1);
+    const Case of = scrambled(hull, 2000, 1);
     EXPECT_GT(findSelfIntersections(of.points, of.triangles).size(), 300U);
     const MeshOptimization result = optimize(of);
     expectGuarantees(of, result);
