@@ -1,6 +1,6 @@
 #include "sampling_analysis.h"
 
-#include "indexed.h"
+#include "point_spread.h"
 #include "rows.h"
 
 #include <Eigen/Cholesky>
@@ -20,15 +20,6 @@ Eigen::Vector2d deviator(const Eigen::Matrix2d& of) {
   const double trace = of.trace();
   return trace > 0.0 ? Eigen::Vector2d((of(0, 0) - of(1, 1)) / trace, 2.0 * of(0, 1) / trace)
                      : Eigen::Vector2d(0.0, 0.0);
-}
-
-/// The neighbours of point i, and theirs, without i; ascending.
-void collectWide(Index i, const Graph& graph, std::vector<Index>& wide) {
-  wide.assign(graph.row(i).begin(), graph.row(i).end());
-  for (const Index v : graph.row(i))
-    wide.insert(wide.end(), graph.row(v).begin(), graph.row(v).end());
-  sortUnique(wide);
-  wide.erase(std::remove(wide.begin(), wide.end(), i), wide.end());
 }
 
 /// The absolute curvature of the surface through local points, the third coordinate of which is the
@@ -53,11 +44,8 @@ std::optional<Eigen::Matrix2d> bendingOf(const Positions& local) {
 }
 
 /// How far spread and bending at point i agree, and the most that they could.
-///
-/// \param wide working memory.
-Eigen::Array2d agreementAt(Index i, const Positions& points, const Graph& graph,
-                           std::vector<Index>& wide) {
-  collectWide(i, graph, wide);
+Eigen::Array2d agreementAt(Index i, const Positions& points, const Graph& graph) {
+  const std::vector<Index> wide = withinTwoSteps(graph, i);
   // With fewer points a quadric is not determined well enough. 5 changes one cloud of few points.
   if (wide.size() < 8)
     return {0.0, 0.0};
@@ -92,23 +80,16 @@ double unevennessAt(Index i, const Graph& graph) {
 }  // namespace
 
 Sampling analyzeSampling(const Positions& points, const Graph& graph, int threads) {
-  const std::size_t n = graph.size();
   // The standard error of the mean is then below 0.02. With 500 samples one of 26 clouds changes.
-  const std::size_t step = std::max<std::size_t>(1, n / 2500);
-  const std::size_t samples = n / step;
+  const auto step = static_cast<Index>(std::max<std::size_t>(1, graph.size() / 2500));
+  const std::size_t samples = graph.size() / static_cast<std::size_t>(step);
   // A sample is some eight times the work of other loops' items.
   const Eigen::Array3d sums =
-      sumOfBlocks(samples, threadCount(threads, 8 * samples),
-                  Eigen::Array3d(Eigen::Array3d::Zero()), [&](std::size_t begin, std::size_t end) {
-                    Eigen::Array3d part = Eigen::Array3d::Zero();
-                    std::vector<Index> wide;
-                    for (std::size_t s = begin; s < end; ++s) {
-                      const auto i = static_cast<Index>(s * step);
-                      part.head<2>() += agreementAt(i, points, graph, wide);
-                      part[2] += unevennessAt(i, graph);
-                    }
-                    return part;
-                  });
+      accumulate(samples, threadCount(threads, 8 * samples), Eigen::Array3d(Eigen::Array3d::Zero()),
+                 [&](Index s, Eigen::Array3d& sum) {
+                   sum.head<2>() += agreementAt(s * step, points, graph);
+                   sum[2] += unevennessAt(s * step, graph);
+                 });
   Sampling result;
   if (sums[1] > 0.0)
     result.alignment = sums[0] / sums[1];

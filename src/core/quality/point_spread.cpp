@@ -24,6 +24,15 @@ Positions someOf(const Positions& points, Eigen::Index count) {
 
 }  // namespace
 
+std::vector<Index> withinTwoSteps(const Graph& graph, Index node) {
+  std::vector<Index> near(graph.row(node).begin(), graph.row(node).end());
+  for (const Index v : graph.row(node))
+    near.insert(near.end(), graph.row(v).begin(), graph.row(v).end());
+  sortUnique(near);
+  near.erase(std::remove(near.begin(), near.end(), node), near.end());
+  return near;
+}
+
 bool fillVolume(const Positions& points) {
   constexpr Eigen::Index min_points = 500;
   // Surfaces have 1.7 to 2.3, with noise of twice the spacing 2.4; solids have 2.6 to 2.8.
@@ -55,13 +64,7 @@ bool areOnLines(const Positions& points, const Graph& graph) {
   std::vector<double> ratios;
   const auto step = static_cast<Index>(graph.size() / 1000 + 1);
   for (Index v = 0; v < points.cols(); v += step) {
-    std::vector<Index> near;
-    for (const Index w : graph.row(v)) {
-      near.push_back(w);
-      near.insert(near.end(), graph.row(w).begin(), graph.row(w).end());
-    }
-    sortUnique(near);
-    near.erase(std::remove(near.begin(), near.end(), v), near.end());
+    std::vector<Index> near = withinTwoSteps(graph, v);
     if (near.size() < neighbors)
       continue;
     const auto distance = [&](Index w) { return (points.col(w) - points.col(v)).norm(); };
