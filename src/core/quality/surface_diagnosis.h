@@ -6,10 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace spherical_param {
-
-/// \addtogroup checks
-/// @{
+namespace spherical_param::internal {
 
 /// Parameters of diagnoseSurface().
 struct DiagnosisOptions {
@@ -50,6 +47,4 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
                                  const std::vector<Opening>& openings,
                                  const DiagnosisOptions& options = {}, int threads = 0);
 
-/// @}
-
-}  // namespace spherical_param
+}  // namespace spherical_param::internal
