@@ -3,6 +3,7 @@
 #include "box_tree.h"
 #include "corner_table.h"
 #include "intersecting_pairs.h"
+#include "ordered_points.h"
 #include "power_of_two.h"
 #include "progress.h"
 #include "radix_sort.h"
@@ -180,50 +181,13 @@ void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const 
 
 // --- The functions of the header -----------------------------------------------------------------
 
-[[noreturn]] void refuse(const std::string& message) {
-  throw InvalidInput("findSelfIntersections: " + message);
-}
-
 /// A mesh, after checks. Throws InvalidInput.
 Mesh checkedMesh(const Positions& points, const Triangles& triangles, const Execution& execution) {
   internal::checkThreads(execution.threads);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!points.col(i).allFinite())
-      refuse("point " + std::to_string(i) + " is not finite; remove such points first");
+  internal::checkFinite("findSelfIntersections", points);
   const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
   internal::checkTriangles("findSelfIntersections", triangles, points.cols());
   return {points, triangles, internal::scaleToUnit(most)};
-}
-
-/// The intersecting pairs of a triangle of a subset and any other.
-///
-/// \param subset ascending, each once.
-Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& execution) {
-  if (subset.empty())
-    return {};
-  const int threads = internal::threadCount(execution.threads, mesh.size());
-  const FractionReport report = internal::reportOf(execution, "intersections");
-  const TriangleTree tree(mesh, subset, threads, report);
-  const auto collect = [&](std::size_t count, const auto& find) {
-    return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
-                                                         kTangledItems);
-  };
-  Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
-    tree.findLaterPairs(begin, end, kAll, found);
-  });
-  if (subset.size() < mesh.size()) {
-    const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
-      auto next = std::lower_bound(subset.begin(), subset.end(), begin);
-      for (Index t = begin; t < end; ++t)
-        if (next != subset.end() && *next == t)
-          ++next;
-        else
-          tree.findPairs(mesh.face(t), 0, found);
-    });
-    pairs.insert(pairs.end(), others.begin(), others.end());
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
 }
 
 }  // namespace
@@ -283,11 +247,35 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   const Mesh mesh = checkedMesh(points, triangles, execution);
   for (const Index t : of)
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
-      refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
-             std::to_string(mesh.size()));
+      throw InvalidInput("findSelfIntersections: triangle " + std::to_string(t) +
+                         " is asked for, but there are " + std::to_string(mesh.size()));
+  if (of.empty())
+    return {};
   Indexed<Index> subset(of.begin(), of.end());
   internal::sortUnique(subset);
-  return pairsOf(mesh, subset, execution);
+  const int threads = internal::threadCount(execution.threads, mesh.size());
+  const FractionReport report = internal::reportOf(execution, "intersections");
+  const TriangleTree tree(mesh, subset, threads, report);
+  const auto collect = [&](std::size_t count, const auto& find) {
+    return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
+                                                         kTangledItems);
+  };
+  Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
+    tree.findLaterPairs(begin, end, kAll, found);
+  });
+  if (subset.size() < mesh.size()) {
+    const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
+      auto next = std::lower_bound(subset.begin(), subset.end(), begin);
+      for (Index t = begin; t < end; ++t)
+        if (next != subset.end() && *next == t)
+          ++next;
+        else
+          tree.findPairs(mesh.face(t), 0, found);
+    });
+    pairs.insert(pairs.end(), others.begin(), others.end());
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 std::size_t countTriangles(const Pairs& pairs) {
