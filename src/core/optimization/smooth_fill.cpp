@@ -228,14 +228,184 @@ public:
           addPatch(first);
   }
 
-  void bend(const FractionReport& report);
-  SmoothFill withoutIntersections(const Execution& execution);
+  /// Refines and fairs all patches; leaves out those that need no vertices.
+  void bend(const FractionReport& report) {
+    double done = 0.0;
+    // Wide openings between sparse points take no more vertices than the cloud has.
+    Index left = static_cast<Index>(points_.cols()) + 1000;
+    for (FillPatch& patch : patches_) {
+      for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
+        for (bool is_coarse = round < 3; is_coarse; is_coarse = split(patch, left)) {
+          reportFraction(report, done);
+          relax(patch, taken_);
+        }
+        reportFraction(report, done);
+        fair(patch, true, patch.plate);
+      }
+      patch.membrane = patch.flat;
+      fair(patch, false, patch.membrane);
+      left -= patch.added();
+      done += 1.0 / static_cast<double>(patches_.size());
+    }
+    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
+                                  [](const FillPatch& patch) { return patch.added() == 0; }),
+                   patches_.end());
+  }
+
+  /// The mesh with patches that bend as far as they do not intersect more than the given ones.
+  SmoothFill withoutIntersections(const Execution& execution) {
+    const auto given = findSelfIntersections(points_, triangles_, execution);
+    for (;;) {
+      Indexed<Index> patch_of;
+      SmoothFill fill = assembled(patch_of);
+      fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, execution);
+      // For each patch, the pairs now without those before.
+      Indexed<Index> more(patches_.size(), 0);
+      const auto count = [&](const auto& pairs, Index by) {
+        for (const auto& pair : pairs)
+          for (const Index t : pair)
+            if (patch_of[t] >= 0)
+              more[patch_of[t]] += by;
+      };
+      count(fill.self_intersections, 1);
+      count(given, -1);
+      bool has_changed = false;
+      for (const Index i : indicesOf(more))
+        if (more[i] > 0 && patches_[i].bend != AsGiven) {
+          patches_[i].bend = static_cast<Bend>(patches_[i].bend + 1);
+          has_changed = true;
+        }
+      if (!has_changed && fill.self_intersections.size() <= given.size())
+        return fill;
+      for (FillPatch& patch : patches_)
+        patch.bend = has_changed ? patch.bend : AsGiven;
+    }
+  }
 
 private:
-  void measureSpacing();
-  void addPatch(Index first);
-  Corners cornersIn(FillPatch& patch, Index t) const;
-  SmoothFill assembled(Indexed<Index>& patch_of) const;
+  /// The mean length of the edges at a vertex that are not over openings; elsewhere the mean of
+  /// all.
+  void measureSpacing() {
+    double sum = 0.0;
+    double all = 0.0;
+    Indexed<double> count(spacing_.size(), 0.0);
+    for (Index t = 0; t < triangles_.cols(); ++t)
+      for (Index k = 0; opening_of_[t] < 0 && k < 3; ++k) {
+        const Index a = triangles_(k, t);
+        const Index b = triangles_(nextCorner(k), t);
+        const double length = (points_.col(a) - points_.col(b)).norm();
+        for (const Index v : {a, b}) {
+          spacing_[v] += length;
+          count[v] += 1.0;
+        }
+        sum += length;
+        all += 1.0;
+      }
+    for (const Index v : indicesOf(spacing_))
+      spacing_[v] = count[v] > 0.0 ? spacing_[v] / count[v] : sum / std::max(all, 1.0);
+  }
+
+  /// The corners of a triangle of the mesh in a patch, which gets those that it lacks.
+  Corners cornersIn(FillPatch& patch, Index t) const {
+    Corners corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index v = triangles_(static_cast<Index>(k), t);
+      const auto [place, is_new] = patch.number.emplace(v, patch.given.count());
+      if (is_new)
+        patch.given.push_back(v);
+      corners[k] = place->second;
+    }
+    return corners;
+  }
+
+  /// Adds the connected triangles over an opening from one on, if they form a disc.
+  void addPatch(Index first) {
+    FillPatch patch;
+    patch.opening = std::exchange(opening_of_[first], -1);
+    patch.at = {first};
+    for (std::size_t i = 0; i < patch.at.size(); ++i) {
+      patch.put(static_cast<Index>(i), cornersIn(patch, patch.at[i]));
+      for (Index k = 0; k < 3; ++k) {
+        const Index v = triangles_(k, patch.at[i]);
+        const Index next = triangles_(nextCorner(k), patch.at[i]);
+        corners_.forEachCorner(next, [&](Index t, Index at) {
+          if (opening_of_[t] == patch.opening && triangles_(nextCorner(at), t) == v) {
+            opening_of_[t] = -1;
+            patch.at.push_back(t);
+          }
+        });
+      }
+    }
+    patch.own = patch.given.count();
+    if (!isDisc(patch))
+      return;
+    std::set<Index> seen(patch.at.begin(), patch.at.end());
+    for (Index own = 0; own < patch.own; ++own)
+      corners_.forEachCorner(patch.given[own], [&](Index t, Index) {
+        if (seen.insert(t).second)
+          patch.ring.push_back(cornersIn(patch, t));
+      });
+    for (const Index t : seen)
+      for (Index k = 0; k < 3; ++k)
+        taken_.insert(undirected(triangles_(k, t), triangles_(nextCorner(k), t)));
+    for (const Index v : patch.given) {
+      patch.flat.push_back(points_.col(v));
+      patch.spacing.push_back(spacing_[v]);
+    }
+    patch.plate = patch.flat;
+    patches_.push_back(std::move(patch));
+  }
+
+  /// The mesh with the patches as they bend now. \param patch_of of each triangle; -1: none
+  SmoothFill assembled(Indexed<Index>& patch_of) const {
+    using Triangle = Eigen::Matrix<Index, 3, 1>;
+    SmoothFill fill;
+    std::vector<Eigen::Vector3d> added;
+    std::vector<Triangle> more;
+    fill.points = points_;
+    fill.triangles = triangles_;
+    patch_of.assign(columnCount(triangles_), -1);
+    for (Index i = 0; i < patches_.count(); ++i) {
+      const FillPatch& patch = patches_[i];
+      for (const Index t : patch.at)
+        patch_of[t] = i;
+      if (patch.bend == AsGiven)
+        continue;
+      const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added.size());
+      for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+        Triangle triangle(patch.triangles[t].data());
+        for (Index& v : triangle)
+          v = v < patch.given.count() ? patch.given[v] : first + v - patch.given.count();
+        if (t < patch.at.size()) {
+          fill.triangles.col(patch.at[t]) = triangle;
+        } else {
+          more.push_back(triangle);
+          fill.opening_of.push_back(patch.opening);
+          patch_of.push_back(i);
+        }
+      }
+      const Places& places = patch.bend == Membrane ? patch.membrane : patch.plate;
+      for (Index v = patch.given.count(); v < places.count(); ++v) {
+        added.push_back(places[v]);
+        const auto distance = [&](Index other) {
+          return (points_.col(other) - added.back()).squaredNorm();
+        };
+        fill.nearest.push_back(*std::min_element(
+            patch.given.begin(), patch.given.begin() + patch.own,
+            [&](Index one, Index other) { return distance(one) < distance(other); }));
+      }
+      if (fill.filled.empty() || fill.filled.back() != patch.opening)
+        fill.filled.push_back(patch.opening);
+    }
+    const auto append = [](const auto& columns, auto& matrix) {
+      const Eigen::Index before = matrix.cols();
+      matrix.conservativeResize(3, before + static_cast<Eigen::Index>(columns.size()));
+      std::copy(columns.begin(), columns.end(), matrix.colwise().begin() + before);
+    };
+    append(added, fill.points);
+    append(more, fill.triangles);
+    return fill;
+  }
 
   const Positions& points_;
   const Triangles& triangles_;
@@ -245,183 +415,6 @@ private:
   Indexed<FillPatch> patches_;
   Edges taken_;  // of the mesh, at the vertices of patches
 };
-
-/// The mean length of the edges at a vertex that are not over openings; elsewhere the mean of all.
-void SmoothFiller::measureSpacing() {
-  double sum = 0.0;
-  double all = 0.0;
-  Indexed<double> count(spacing_.size(), 0.0);
-  for (Index t = 0; t < triangles_.cols(); ++t)
-    for (Index k = 0; opening_of_[t] < 0 && k < 3; ++k) {
-      const Index a = triangles_(k, t);
-      const Index b = triangles_(nextCorner(k), t);
-      const double length = (points_.col(a) - points_.col(b)).norm();
-      for (const Index v : {a, b}) {
-        spacing_[v] += length;
-        count[v] += 1.0;
-      }
-      sum += length;
-      all += 1.0;
-    }
-  for (const Index v : indicesOf(spacing_))
-    spacing_[v] = count[v] > 0.0 ? spacing_[v] / count[v] : sum / std::max(all, 1.0);
-}
-
-/// The corners of a triangle of the mesh in a patch, which gets those that it lacks.
-Corners SmoothFiller::cornersIn(FillPatch& patch, Index t) const {
-  Corners corners{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Index v = triangles_(static_cast<Index>(k), t);
-    const auto [place, is_new] = patch.number.emplace(v, patch.given.count());
-    if (is_new)
-      patch.given.push_back(v);
-    corners[k] = place->second;
-  }
-  return corners;
-}
-
-/// Adds the connected triangles over an opening from one on, if they form a disc.
-void SmoothFiller::addPatch(Index first) {
-  FillPatch patch;
-  patch.opening = std::exchange(opening_of_[first], -1);
-  patch.at = {first};
-  for (std::size_t i = 0; i < patch.at.size(); ++i) {
-    patch.put(static_cast<Index>(i), cornersIn(patch, patch.at[i]));
-    for (Index k = 0; k < 3; ++k) {
-      const Index v = triangles_(k, patch.at[i]);
-      const Index next = triangles_(nextCorner(k), patch.at[i]);
-      corners_.forEachCorner(next, [&](Index t, Index at) {
-        if (opening_of_[t] == patch.opening && triangles_(nextCorner(at), t) == v) {
-          opening_of_[t] = -1;
-          patch.at.push_back(t);
-        }
-      });
-    }
-  }
-  patch.own = patch.given.count();
-  if (!isDisc(patch))
-    return;
-  std::set<Index> seen(patch.at.begin(), patch.at.end());
-  for (Index own = 0; own < patch.own; ++own)
-    corners_.forEachCorner(patch.given[own], [&](Index t, Index) {
-      if (seen.insert(t).second)
-        patch.ring.push_back(cornersIn(patch, t));
-    });
-  for (const Index t : seen)
-    for (Index k = 0; k < 3; ++k)
-      taken_.insert(undirected(triangles_(k, t), triangles_(nextCorner(k), t)));
-  for (const Index v : patch.given) {
-    patch.flat.push_back(points_.col(v));
-    patch.spacing.push_back(spacing_[v]);
-  }
-  patch.plate = patch.flat;
-  patches_.push_back(std::move(patch));
-}
-
-/// Refines and fairs all patches; leaves out those that need no vertices.
-void SmoothFiller::bend(const FractionReport& report) {
-  double done = 0.0;
-  // Wide openings between sparse points take no more vertices than the cloud has.
-  Index left = static_cast<Index>(points_.cols()) + 1000;
-  for (FillPatch& patch : patches_) {
-    for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
-      for (bool is_coarse = round < 3; is_coarse; is_coarse = split(patch, left)) {
-        reportFraction(report, done);
-        relax(patch, taken_);
-      }
-      reportFraction(report, done);
-      fair(patch, true, patch.plate);
-    }
-    patch.membrane = patch.flat;
-    fair(patch, false, patch.membrane);
-    left -= patch.added();
-    done += 1.0 / static_cast<double>(patches_.size());
-  }
-  patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
-                                [](const FillPatch& patch) { return patch.added() == 0; }),
-                 patches_.end());
-}
-
-/// The mesh with the patches as they bend now. \param patch_of of each triangle; -1: none
-SmoothFill SmoothFiller::assembled(Indexed<Index>& patch_of) const {
-  using Triangle = Eigen::Matrix<Index, 3, 1>;
-  SmoothFill fill;
-  std::vector<Eigen::Vector3d> added;
-  std::vector<Triangle> more;
-  fill.points = points_;
-  fill.triangles = triangles_;
-  patch_of.assign(columnCount(triangles_), -1);
-  for (Index i = 0; i < patches_.count(); ++i) {
-    const FillPatch& patch = patches_[i];
-    for (const Index t : patch.at)
-      patch_of[t] = i;
-    if (patch.bend == AsGiven)
-      continue;
-    const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added.size());
-    for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
-      Triangle triangle(patch.triangles[t].data());
-      for (Index& v : triangle)
-        v = v < patch.given.count() ? patch.given[v] : first + v - patch.given.count();
-      if (t < patch.at.size()) {
-        fill.triangles.col(patch.at[t]) = triangle;
-      } else {
-        more.push_back(triangle);
-        fill.opening_of.push_back(patch.opening);
-        patch_of.push_back(i);
-      }
-    }
-    const Places& places = patch.bend == Membrane ? patch.membrane : patch.plate;
-    for (Index v = patch.given.count(); v < places.count(); ++v) {
-      added.push_back(places[v]);
-      const auto distance = [&](Index other) {
-        return (points_.col(other) - added.back()).squaredNorm();
-      };
-      fill.nearest.push_back(*std::min_element(
-          patch.given.begin(), patch.given.begin() + patch.own,
-          [&](Index one, Index other) { return distance(one) < distance(other); }));
-    }
-    if (fill.filled.empty() || fill.filled.back() != patch.opening)
-      fill.filled.push_back(patch.opening);
-  }
-  const auto append = [](const auto& columns, auto& matrix) {
-    const Eigen::Index before = matrix.cols();
-    matrix.conservativeResize(3, before + static_cast<Eigen::Index>(columns.size()));
-    std::copy(columns.begin(), columns.end(), matrix.colwise().begin() + before);
-  };
-  append(added, fill.points);
-  append(more, fill.triangles);
-  return fill;
-}
-
-/// The mesh with patches that bend as far as they do not intersect more than the given ones.
-SmoothFill SmoothFiller::withoutIntersections(const Execution& execution) {
-  const auto given = findSelfIntersections(points_, triangles_, execution);
-  for (;;) {
-    Indexed<Index> patch_of;
-    SmoothFill fill = assembled(patch_of);
-    fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, execution);
-    // For each patch, the pairs now without those before.
-    Indexed<Index> more(patches_.size(), 0);
-    const auto count = [&](const auto& pairs, Index by) {
-      for (const auto& pair : pairs)
-        for (const Index t : pair)
-          if (patch_of[t] >= 0)
-            more[patch_of[t]] += by;
-    };
-    count(fill.self_intersections, 1);
-    count(given, -1);
-    bool has_changed = false;
-    for (const Index i : indicesOf(more))
-      if (more[i] > 0 && patches_[i].bend != AsGiven) {
-        patches_[i].bend = static_cast<Bend>(patches_[i].bend + 1);
-        has_changed = true;
-      }
-    if (!has_changed && fill.self_intersections.size() <= given.size())
-      return fill;
-    for (FillPatch& patch : patches_)
-      patch.bend = has_changed ? patch.bend : AsGiven;
-  }
-}
 
 }  // namespace
 
