@@ -11,14 +11,6 @@ namespace {
 constexpr SmoothingMethod kSmoothingMethods[] = {SmoothingMethod::Umbrella,
                                                  SmoothingMethod::Biharmonic};
 
-SmoothingOptions optionsOf(SmoothingMethod method, int steps = 5, bool restore_volume = true) {
-  SmoothingOptions options;
-  options.method = method;
-  options.steps = steps;
-  options.restore_volume = restore_volume;
-  return options;
-}
-
 Mesh noisyMesh(Index n, double noise, std::uint64_t seed) {
   const Positions sphere = spiralSphere(n);
   return {withNoise(sphere, noise, seed), triangulateSphere(sphere)};
@@ -47,7 +39,7 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
           const double phase = a * i + b * j;
           points.col(i * m + j) << std::cos(phase), std::sin(phase), std::cos(phase + 1.0);
         }
-      SmoothingOptions options = optionsOf(SmoothingMethod::Umbrella, steps, false);
+      SmoothingOptions options{SmoothingMethod::Umbrella, steps, false};
       EXPECT_LT(largestDifference(smoothSurface(points, triangles, options).points,
                                   std::pow(1.0 - k, steps) * points),
                 1e-13);
@@ -66,11 +58,11 @@ TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
   Positions means(3, 100);
   for (Index i = 0; i < 100; ++i)
     means.col(i) = mesh.points(Eigen::all, rowOf(graph, i)).rowwise().mean();
-  EXPECT_LT(largestDifference(smoothSurface(mesh.points, mesh.triangles,
-                                            optionsOf(SmoothingMethod::Umbrella, 1, false))
-                                  .points,
-                              means),
-            1e-14);
+  EXPECT_LT(
+      largestDifference(
+          smoothSurface(mesh.points, mesh.triangles, {SmoothingMethod::Umbrella, 1, false}).points,
+          means),
+      1e-14);
 }
 
 TEST(Smoothing, VolumeIsRestored) {
@@ -79,7 +71,7 @@ TEST(Smoothing, VolumeIsRestored) {
        {noisyMesh(300, 0.05, 2), Mesh{withNoise(tube.points, 0.05, 3), tube.triangles}})
     for (const SmoothingMethod method : kSmoothingMethods) {
       const double volume = volumeOf(mesh.points, mesh.triangles);
-      const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method));
+      const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, {method, 5});
       // Newton's method ends below 1e-12; the rest is the rounding of the sums.
       EXPECT_NEAR(volumeOf(smooth.points, mesh.triangles) / volume, 1.0, 1e-11);
       EXPECT_NEAR(smooth.report.volume_before / volume, 1.0, 1e-12);
@@ -93,10 +85,10 @@ TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
   stray << 0.5, 7.0, 0.25, 8.0, 0.125, 9.0;
   for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth =
-        smoothSurface(horizontally(mesh.points, stray), mesh.triangles, optionsOf(method));
+        smoothSurface(horizontally(mesh.points, stray), mesh.triangles, {method, 5});
     EXPECT_EQ(smooth.points.rightCols(2), stray);
     EXPECT_EQ(smooth.points.leftCols(200),
-              smoothSurface(mesh.points, mesh.triangles, optionsOf(method)).points);
+              smoothSurface(mesh.points, mesh.triangles, {method, 5}).points);
     const Eigen::ArrayXd moved =
         (smooth.points.leftCols(200) - mesh.points).colwise().norm().transpose().array();
     EXPECT_NEAR(smooth.report.max_displacement, moved.maxCoeff(), 1e-14);
@@ -115,13 +107,13 @@ TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
   Triangles reversed = mesh.triangles;
   reversed.row(1).swap(reversed.row(2));
   for (const SmoothingMethod method : kSmoothingMethods) {
-    const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method));
-    const Smoothing other = smoothSurface(moved, mesh.triangles, optionsOf(method));
+    const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, {method, 5});
+    const Smoothing other = smoothSurface(moved, mesh.triangles, {method, 5});
     // Coordinates of 2000 are rounded by 2e-13; the volume's restoration by no more.
     EXPECT_LT(largestDifference(other.points, (50.0 * rotation * smooth.points).colwise() + shift),
               1e-9);
     EXPECT_NEAR(other.report.rms_displacement, 50.0 * smooth.report.rms_displacement, 1e-9);
-    const Smoothing inside_out = smoothSurface(mesh.points, reversed, optionsOf(method));
+    const Smoothing inside_out = smoothSurface(mesh.points, reversed, {method, 5});
     EXPECT_LT(largestDifference(smooth.points, inside_out.points), 1e-12);
     EXPECT_NEAR(inside_out.report.volume_after, -smooth.report.volume_after, 1e-12);
   }
@@ -136,23 +128,21 @@ TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
   Triangles two_sides(3, 2);
   two_sides << 0, 0, 1, 2, 2, 1;
   for (const SmoothingMethod method : kSmoothingMethods) {
-    const Smoothing none = smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 0));
+    const Smoothing none = smoothSurface(mesh.points, mesh.triangles, {method, 0});
     EXPECT_EQ(none.points, mesh.points);
     EXPECT_EQ(none.report.max_displacement, 0.0);
     EXPECT_EQ(none.report.volume_after, none.report.volume_before);
     EXPECT_NEAR(none.report.volume_before, volumeOf(mesh.points, mesh.triangles), 1e-12);
     for (const Index n : {0, 2}) {
       const Positions points = mesh.points.leftCols(n);
-      EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(method)).points, points);
+      EXPECT_EQ(smoothSurface(points, Triangles(3, 0), {method, 5}).points, points);
     }
-    const Smoothing smooth = smoothSurface(flat, mesh.triangles, optionsOf(method));
+    const Smoothing smooth = smoothSurface(flat, mesh.triangles, {method, 5});
     EXPECT_TRUE(smooth.points.allFinite());
     EXPECT_EQ(smooth.points.row(2).cwiseAbs().maxCoeff(), 0.0);
-    EXPECT_LT(
-        largestDifference(smoothSurface(same, mesh.triangles, optionsOf(method)).points, same),
-        1e-15);
-    EXPECT_TRUE(
-        smoothSurface(mesh.points.leftCols(3), two_sides, optionsOf(method)).points.allFinite());
+    EXPECT_LT(largestDifference(smoothSurface(same, mesh.triangles, {method, 5}).points, same),
+              1e-15);
+    EXPECT_TRUE(smoothSurface(mesh.points.leftCols(3), two_sides, {method, 5}).points.allFinite());
   }
 }
 
