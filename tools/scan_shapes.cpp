@@ -161,8 +161,8 @@ Vector3d project(Vector3d p, const Distance& distance) {
 }
 
 /// Calls work(i) for each i in [0, count), on several threads.
-void forEach(std::size_t count, const std::function<void(std::size_t)>& work) {
-  internal::forEachItem(count, internal::threadCount(0, count), {}, work);
+void forEach(std::size_t count, const std::function<void(Index)>& work) {
+  internal::forEachIndex(count, internal::threadCount(0, count), {}, work);
 }
 
 /// Uniform in [0, 1). The distributions of the standard library differ between implementations.

@@ -287,7 +287,7 @@ Positions evaluateSphericalHarmonics(const SphericalHarmonics& harmonics,
   const Legendre legendre(harmonics.degree);
   const std::size_t count = internal::columnCount(directions);
   Positions result(3, directions.cols());
-  internal::forEachBlock(count, internal::threadCount(threads, count, internal::kBlockSize),
+  internal::forEachBlock(count, internal::threadCount(threads, count, internal::kBlockSize), {},
                          [&](std::size_t, std::size_t begin, std::size_t end) {
                            Eigen::VectorXd values(terms);
                            for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end);

@@ -1,22 +1,6 @@
 #include "box_tree.h"
 
-#include <utility>
-
 namespace spherical_param::internal {
-
-void BoxTree::build(Groups groups, int threads) {
-  if (groups.empty())
-    return;
-  levels_.push_back(std::move(groups));
-  while (levels_.back().size() > 1) {
-    const Groups& below = levels_.back();
-    Groups level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-    forEachIndex(below.size(), below.size() >= kParallelThreshold ? threads : 1, {}, [&](Index i) {
-      level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
-    });
-    levels_.push_back(std::move(level));
-  }
-}
 
 void BoxTree::set(Index i, const FloatBox& box) {
   if (levels_.empty())

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "rows.h"
-#include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
 
@@ -59,11 +58,14 @@ public:
   /// \param box_of returns box i of [0, count).
   template <typename BoxOf>
   BoxTree(std::size_t count, int threads, const FractionReport& report, const BoxOf& box_of) {
-    Groups groups((count + BoxGroup::kSize - 1) / BoxGroup::kSize);
-    static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
-    forEachIndex(count, threads, report,
-                 [&](Index i) { groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, box_of(i)); });
-    build(std::move(groups), threads);
+    if (count == 0)
+      return;
+    addLevel(count, threads, report, box_of);
+    while (levels_.back().size() > 1) {
+      const Groups& below = levels_.back();
+      addLevel(below.size(), below.size() >= kParallelThreshold ? threads : 1, {},
+               [&](Index i) { return below[i].all(); });
+    }
   }
 
   FloatBox at(Index i) const { return levels_[0][i / BoxGroup::kSize].at(i % BoxGroup::kSize); }
@@ -100,15 +102,23 @@ public:
     if (levels_.size() == 1)
       visit_pairs(0, box);
     else
-      descend(levels_.size() - 1, 0, 1, box, group * BoxGroup::kSize, neverSkips, visit_pairs);
+      descend(
+          levels_.size() - 1, 0, 1, box, group * BoxGroup::kSize,
+          [](const FloatBox&) { return false; }, visit_pairs);
   }
 
 private:
   using Groups = Indexed<BoxGroup>;
 
-  void build(Groups groups, int threads);
-
-  static bool neverSkips(const FloatBox&) { return false; }
+  /// Adds a level of `count` boxes on top.
+  template <typename BoxOf>
+  void addLevel(std::size_t count, int threads, const FractionReport& report, const BoxOf& box_of) {
+    Groups groups((count + BoxGroup::kSize - 1) / BoxGroup::kSize);
+    static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
+    forEachIndex(count, threads, report,
+                 [&](Index i) { groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, box_of(i)); });
+    levels_.push_back(std::move(groups));
+  }
 
   /// Calls visit(i, its box) for boxes of the level `last`.
   template <typename Skips, typename Visit>

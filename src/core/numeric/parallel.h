@@ -44,16 +44,8 @@ void forEachTask(std::size_t count, int threads, const std::function<void(std::s
 /// of that loop; 0 in the thread that called it.
 std::size_t threadNumber();
 
-/// Calls work(block, begin, end) for the blocks of [0, count), as forEachTask() does.
-template <typename Work>
-void forEachBlock(std::size_t count, int threads, const Work& work) {
-  const auto task = [&](std::size_t block) {
-    work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize));
-  };
-  forEachTask((count + kBlockSize - 1) / kBlockSize, threads, std::cref(task));
-}
-
-/// The same with reports: in a few dozen parallel regions, with the same blocks.
+/// Calls work(block, begin, end) for the blocks of [0, count), as forEachTask() does; with reports
+/// in a few dozen parallel regions, with the same blocks.
 ///
 /// \param items_per_report minimum; lower for items that take long.
 template <typename Work>
@@ -63,51 +55,50 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
   const std::size_t most = report ? std::max(items_per_report, blocks * kBlockSize) : count;
   for (std::size_t first = 0; first < count; first += most) {
     const std::size_t size = std::min(most, count - first);
-    forEachBlock(size, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      work(first / kBlockSize + block, first + begin, first + end);
-    });
+    const auto task = [&](std::size_t block) {
+      const std::size_t begin = first + block * kBlockSize;
+      work(begin / kBlockSize, begin, std::min(first + size, begin + kBlockSize));
+    };
+    forEachTask((size + kBlockSize - 1) / kBlockSize, threads, std::cref(task));
     reportFraction(report, static_cast<double>(first + size) / static_cast<double>(count));
   }
 }
 
-/// Calls work(i) for each i in [0, count), on several threads.
+/// Calls work(memory, i) for each i in [0, count), on several threads. The memory is that of a
+/// block of items.
 ///
 /// \param report receives the fraction done, as in forEachBlock().
-template <typename Work>
-void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
+template <typename Memory, typename Work>
+void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
+    Memory memory;
     for (std::size_t i = begin; i < end; ++i)
-      work(i);
+      work(memory, static_cast<Index>(i));
   });
 }
 
-/// The sum of term(begin, end) over the blocks of [0, count), in their order.
-template <typename Value, typename Term>
-Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term,
-                  const FractionReport& report = {}) {
+/// Calls work(i) for each i in [0, count), on several threads.
+template <typename Work>
+void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
+  struct None {};
+  forEachIndex<None>(count, threads, report, [&](const None&, Index i) { work(i); });
+}
+
+/// The sum of what add(i, sum) adds for i in [0, count), block by block, in their order.
+template <typename Value, typename Add>
+Value accumulate(std::size_t count, int threads, const Value& zero, const Add& add,
+                 const FractionReport& report = {}) {
   std::vector<Value> sums((count + kBlockSize - 1) / kBlockSize, zero);
   forEachBlock(count, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    sums[block] = term(begin, end);
+    Value sum = zero;
+    for (std::size_t i = begin; i < end; ++i)
+      add(static_cast<Index>(i), sum);
+    sums[block] = sum;
   });
   Value total = zero;
   for (const Value& sum : sums)
     total += sum;
   return total;
-}
-
-/// The sum of what add(i, sum) adds for i in [0, count), block by block.
-template <typename Value, typename Add>
-Value accumulate(std::size_t count, int threads, const Value& zero, const Add& add,
-                 const FractionReport& report = {}) {
-  return sumOfBlocks(
-      count, threads, zero,
-      [&](std::size_t begin, std::size_t end) {
-        Value sum = zero;
-        for (std::size_t i = begin; i < end; ++i)
-          add(static_cast<Index>(i), sum);
-        return sum;
-      },
-      report);
 }
 
 /// What collect(begin, end, found) appends to `found` for the blocks of [0, count), in their order.

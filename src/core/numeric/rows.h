@@ -2,7 +2,6 @@
 
 #include "indexed.h"
 #include "parallel.h"
-#include "spherical_param/types.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,24 +14,19 @@ namespace spherical_param::internal {
 template <typename Number>
 class NumberRange {
 public:
-  class Iterator {
-  public:
-    explicit Iterator(Number number) : number_(number) {}
-    Number operator*() const { return number_; }
-    void operator++() { ++number_; }
-    bool operator!=(const Iterator& other) const { return number_ != other.number_; }
-
-  private:
-    Number number_;
+  struct Iterator {
+    Number number;
+    Number operator*() const { return number; }
+    void operator++() { ++number; }
+    bool operator!=(const Iterator& other) const { return number != other.number; }
   };
 
-  NumberRange(Number first, Number last) : first_(first), last_(last) {}
-  Iterator begin() const { return Iterator(first_); }
-  Iterator end() const { return Iterator(last_); }
+  NumberRange(Number first, Number last) : begin_{first}, end_{last} {}
+  Iterator begin() const { return begin_; }
+  Iterator end() const { return end_; }
 
 private:
-  Number first_;
-  Number last_;
+  Iterator begin_, end_;
 };
 
 /// Some entries of an array, one after the other.
@@ -100,23 +94,6 @@ inline Row<Index> listOf(const NeighborLists& lists, Index i) {
 template <typename Array>
 NumberRange<Index> indicesOf(const Array& array) {
   return {0, static_cast<Index>(array.size())};
-}
-
-/// Calls work(memory, i) for each i in [0, count), on several threads. The memory is that of a
-/// block of items.
-template <typename Memory, typename Work>
-void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
-  forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
-    Memory memory;
-    for (std::size_t i = begin; i < end; ++i)
-      work(memory, static_cast<Index>(i));
-  });
-}
-
-/// Calls work(i) for each i in [0, count), on several threads.
-template <typename Work>
-void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
-  forEachItem(count, threads, report, [&](std::size_t i) { work(static_cast<Index>(i)); });
 }
 
 }  // namespace spherical_param::internal

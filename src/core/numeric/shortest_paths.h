@@ -1,7 +1,6 @@
 #pragma once
 
 #include "indexed.h"
-#include "spherical_param/types.h"
 
 #include <functional>
 #include <queue>

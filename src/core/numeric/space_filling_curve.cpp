@@ -5,7 +5,6 @@
 #include "radix_sort.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace spherical_param::internal {
 namespace {

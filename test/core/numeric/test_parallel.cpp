@@ -66,18 +66,18 @@ TEST(Parallel, AnExceptionOfAReportEndsTheWork) {
     if (fraction > 0.3)
       throw std::runtime_error("enough");
   };
-  EXPECT_THROW(forEachItem(5 * kReportedItems, 3, report, [&](std::size_t) { ++done; }),
+  EXPECT_THROW(forEachIndex(5 * kReportedItems, 3, report, [&](Index) { ++done; }),
                std::runtime_error);
   EXPECT_EQ(done, 2 * kReportedItems);
 }
 
 TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
   for (const int threads : {1, 3}) {
-    EXPECT_THROW(forEachItem(100 * kBlockSize, threads, {},
-                             [](std::size_t i) {
-                               if (i == 7 * kBlockSize || i == 70 * kBlockSize)
-                                 throw std::bad_alloc();
-                             }),
+    EXPECT_THROW(forEachIndex(100 * kBlockSize, threads, {},
+                              [](Index i) {
+                                if (i == Index{7 * kBlockSize} || i == Index{70 * kBlockSize})
+                                  throw std::bad_alloc();
+                              }),
                  std::bad_alloc);
     EXPECT_THROW(forEachTask(7, threads,
                              [](std::size_t i) {
@@ -87,7 +87,7 @@ TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
                  std::runtime_error);
     // And the next one works.
     std::atomic<std::size_t> done{0};
-    forEachItem(3 * kBlockSize, threads, {}, [&](std::size_t) { ++done; });
+    forEachIndex(3 * kBlockSize, threads, {}, [&](Index) { ++done; });
     EXPECT_EQ(done, 3 * kBlockSize);
   }
 }
@@ -133,7 +133,7 @@ TEST(Parallel, ALoopInATaskOfAnotherHasOneThread) {
     const std::thread::id thread = std::this_thread::get_id();
     const std::size_t number = threadNumber();
     EXPECT_LT(number, 3U);
-    forEachItem(3 * kBlockSize, 2, {}, [&](std::size_t) {
+    forEachIndex(3 * kBlockSize, 2, {}, [&](Index) {
       EXPECT_EQ(threadNumber(), 0U);
       EXPECT_EQ(std::this_thread::get_id(), thread);
       ++done;
