@@ -20,7 +20,7 @@ struct Piece {
 
 std::vector<Piece> piecesOf(const Graph& graph) {
   UnionFind sets = connectedComponents(graph);
-  const Indexed<Index> set = representatives(sets, graph.size());
+  const Indexed<Index> set = Partition(sets).of;
   Indexed<Index> piece_of_set(graph.size(), -1);
   Indexed<Index> number(graph.size());  // of each node in its piece
   Indexed<Piece> pieces;

@@ -1,8 +1,8 @@
 #include "mesh_cleaning.h"
 
 #include "face_mesh.h"
+#include "indexed.h"
 #include "intersection_removal.h"
-#include "point_set.h"
 #include "spherical_param/self_intersection.h"
 
 #include <utility>

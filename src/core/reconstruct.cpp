@@ -4,6 +4,7 @@
 #include "consolidation.h"
 #include "default_method.h"
 #include "embedding_history.h"
+#include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
@@ -12,7 +13,6 @@
 #include "open_surface.h"
 #include "orientation.h"
 #include "paper_method.h"
-#include "point_set.h"
 #include "power_of_two.h"
 #include "result_units.h"
 #include "selection.h"
@@ -181,7 +181,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
   for (;;) {
     Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
-    const bool is_flat = areCoplanar(selection.pointsOf(part));
+    const bool is_flat = internal::areCoplanar(selection.pointsOf(part));
     if (is_flat && !mayBeOpen(options))
       refuseFlat(options);
     NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());

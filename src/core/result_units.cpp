@@ -42,18 +42,17 @@ void dropUnused(OrderedPoints& nodes, Surface& surface) {
   const std::vector<Index> unused = std::exchange(surface.topology.unused_vertices, {});
   if (unused.empty())
     return;
-  DistinctPoints& distinct = nodes.distinct;
-  Indexed<Index> number(distinct.input_of_vertex.size(), 0);
+  Indexed<Index> number(nodes.input_of_vertex.size(), 0);
   for (const Index node : unused)
     number[nodes.vertex_of_node[node]] = -1;
   Indexed<Index> input_of_vertex;
   for (const Index v : indicesOf(number))
     if (number[v] == 0) {
       number[v] = input_of_vertex.count();
-      input_of_vertex.push_back(distinct.input_of_vertex[v]);
+      input_of_vertex.push_back(nodes.input_of_vertex[v]);
     }
-  distinct.input_of_vertex = std::move(input_of_vertex);
-  renumber(number, distinct.vertex_of_input);
+  nodes.input_of_vertex = std::move(input_of_vertex);
+  renumber(number, nodes.vertex_of_input);
   renumber(number, nodes.vertex_of_node);
   std::vector<Eigen::Index> kept;
   const std::vector<Index>& recorded = surface.history.vertices;
@@ -126,12 +125,12 @@ struct Renumbering {
 
 void toInput(OrderedPoints& nodes, Surface& result) {
   dropUnused(nodes, result);
-  const Renumbering renumbering{nodes.vertex_of_node, nodes.distinct.input_of_vertex.size()};
+  const Renumbering renumbering{nodes.vertex_of_node, nodes.input_of_vertex.size()};
   visitValues(result, Scaling{nodes.exponent});
   visitValues(result, renumbering);
   renumbering({"outliers", "", 0, FieldKind::Vertices}, result.outliers);
-  result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
-  result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
+  result.vertex_of_input = std::move(nodes.vertex_of_input);
+  result.input_of_vertex = std::move(nodes.input_of_vertex);
   renumber(result.input_of_vertex, result.outliers);
 }
 

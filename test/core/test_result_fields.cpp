@@ -125,8 +125,8 @@ OrderedPoints reorderedNodes() {
   OrderedPoints nodes;
   nodes.exponent = 3;
   nodes.vertex_of_node = {2, 0, 3, 1};
-  nodes.distinct.vertex_of_input = {0, 1, 2, 3, 3};
-  nodes.distinct.input_of_vertex = {0, 1, 2, 3};
+  nodes.vertex_of_input = {0, 1, 2, 3, 3};
+  nodes.input_of_vertex = {0, 1, 2, 3};
   return nodes;
 }
 

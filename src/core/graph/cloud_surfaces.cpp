@@ -10,7 +10,6 @@
 #include <map>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {
@@ -52,20 +51,24 @@ public:
   SurfaceDistance(const Positions& points, const Graph& agreed, const Stars& stars)
       : points_(points), agreed_(agreed), stars_(stars), tree_(points) {}
 
-  /// \param on_surface n entries; not all 0.
-  void setSurfaces(const Indexed<char>& on_surface) {
-    tree_.setComponents({on_surface.begin(), on_surface.end()});
-    is_beside_ = on_surface;
+  /// \param piece      of each point.
+  /// \param is_surface of each piece; not 0 for all.
+  void setSurfaces(const Indexed<Index>& piece, const Indexed<char>& is_surface) {
+    Indexed<Index> on_surface;
+    for (const Index of : piece)
+      on_surface.push_back(is_surface[of]);
+    is_beside_.assign(on_surface.begin(), on_surface.end());
     for (const Index i : indicesOf(on_surface))
       if (on_surface[i] != 0)
         for (const Index j : stars_.of(i))
           is_beside_[j] = 1;
+    tree_.setComponents(std::move(on_surface));
   }
 
   /// The nearest point on a surface. \param i not on a surface
   Index nearest(Index i) const {
     ComponentTree::Pair pair;
-    tree_.nearestOther(i, {}, pair);
+    tree_.findNearest(i, {}, pair);
     return pair.from == i ? pair.to : pair.from;
   }
 
@@ -106,43 +109,35 @@ bool isInSheet(const Graph& graph, Index i, Index j) {
 }
 
 /// Marks the pieces of which kMinSurface points are joined by edges with triangles on both sides.
-void markSheets(const Graph& agreed, const Indexed<Index>& piece, const Indexed<std::size_t>& sizes,
-                Indexed<char>& is_surface) {
-  UnionFind joined(piece.size());
+void markSheets(const Graph& agreed, const Partition& pieces, Indexed<char>& is_surface) {
+  UnionFind joined(agreed.size());
   for (const Index i : agreed.nodes()) {
-    if (is_surface[piece[i]] != 0 || sizes[piece[i]] < kMinSurface)
+    const Index piece = pieces.of[i];
+    if (is_surface[piece] != 0 || pieces.sizes[piece] < kMinSurface)
       continue;
     for (const Index j : agreed.row(i))
       if (j > i && isInSheet(agreed, i, j))
         joined.unite(i, j);
   }
-  const Indexed<std::size_t> sheet_sizes = setSizes(representatives(joined, piece.size()));
+  const Partition sheets(joined);
   for (const Index i : agreed.nodes())
-    if (sheet_sizes[i] >= kMinSurface)
-      is_surface[piece[i]] = 1;
+    if (sheets.sizes[i] >= kMinSurface)
+      is_surface[pieces.of[i]] = 1;
 }
 
 /// Marks the other large pieces that are no coarser than the surface beside them.
-void markFinePieces(const SurfaceDistance& distance, const Indexed<Index>& piece,
-                    const Indexed<std::size_t>& sizes, Indexed<char>& is_surface) {
+void markFinePieces(const SurfaceDistance& distance, const Partition& pieces,
+                    Indexed<char>& is_surface) {
   // A piece that is coarser than the surface beside it by this factor, and holds no sheet, is a net
   // of stray points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
   constexpr double max_coarseness = 5.0;
-  Indexed<std::vector<double>> coarseness(piece.size());
-  for (const Index i : indicesOf(piece))
-    if (is_surface[piece[i]] == 0 && sizes[piece[i]] >= kMinSurface)
-      coarseness[piece[i]].push_back(distance.coarseness(i));
-  for (const Index k : indicesOf(piece))
+  Indexed<std::vector<double>> coarseness(pieces.of.size());
+  for (const Index i : indicesOf(pieces.of))
+    if (const Index k = pieces.of[i]; is_surface[k] == 0 && pieces.sizes[k] >= kMinSurface)
+      coarseness[k].push_back(distance.coarseness(i));
+  for (const Index k : indicesOf(coarseness))
     if (!coarseness[k].empty() && medianOf(coarseness[k]) <= max_coarseness)
       is_surface[k] = 1;
-}
-
-/// Marks the points of marked pieces.
-Indexed<char> pointsOf(const Indexed<Index>& piece, const Indexed<char>& is_surface) {
-  Indexed<char> on_surface(piece.size());
-  std::transform(piece.begin(), piece.end(), on_surface.begin(),
-                 [&](Index of) { return is_surface[of]; });
-  return on_surface;
 }
 
 /// Joins small components to the nearest large one beside them: a base, the tip of an ear.
@@ -151,10 +146,10 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
   // of the coarser one.
   constexpr double max_fraction = 0.05;
   constexpr double max_gap = 4.0;
-  const Indexed<Index> component = representatives(components, agreed.size());
-  const Indexed<std::size_t> sizes = setSizes(component);
+  const Partition parts(components);
+  const Indexed<std::size_t>& sizes = parts.sizes;
   Indexed<char> is_surface(agreed.size(), 0);
-  markSheets(agreed, component, sizes, is_surface);
+  markSheets(agreed, parts, is_surface);
   UnionFind all = components;
   std::vector<Bridge> bridges = shortestBridges(points, all, 1);
   std::stable_sort(bridges.begin(), bridges.end(),
@@ -162,7 +157,7 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
   // Each joins one: two large ones beside a small one stay apart.
   Indexed<char> is_joined(agreed.size(), 0);
   for (const Bridge& bridge : bridges) {
-    const auto [small, large] = std::minmax(component[bridge.from], component[bridge.to],
+    const auto [small, large] = std::minmax(parts.of[bridge.from], parts.of[bridge.to],
                                             [&](Index a, Index b) { return sizes[a] < sizes[b]; });
     if (is_surface[small] != 0 && is_surface[large] != 0 && is_joined[small] == 0 &&
         static_cast<double>(sizes[small]) <= max_fraction * static_cast<double>(sizes[large]) &&
@@ -183,8 +178,7 @@ Graph joinedAlongRims(const Positions& points, Graph agreed, const Stars& stars)
   // and the base of a model with fewer points, 4.4 to 22 times.
   constexpr double max_coarseness = 1.5;
   UnionFind components = connectedComponents(agreed);
-  const Indexed<Index> component = representatives(components, agreed.size());
-  const Indexed<std::size_t> sizes = setSizes(component);
+  const auto [component, sizes] = Partition(components);
   const auto shortest = [&](Index i) {
     const Row<double> lengths = agreed.lengthsOf(i);
     return *std::min_element(lengths.begin(), lengths.end());
@@ -218,41 +212,40 @@ Indexed<Index> partsOf(const Positions& points, const Graph& agreed, const Stars
                        std::size_t min_points) {
   UnionFind components = connectedComponents(agreed);
   joinSmall(points, agreed, components);
-  Indexed<Index> part = representatives(components, agreed.size());
-  const Indexed<std::size_t> sizes = setSizes(part);
-  Indexed<char> in_part(part.size());
-  std::transform(part.begin(), part.end(), in_part.begin(),
-                 [&](Index component) { return sizes[component] >= min_points ? 1 : 0; });
-  const auto [least, most] = std::minmax_element(in_part.begin(), in_part.end());
-  if (*most == 0)
-    std::fill(part.begin(), part.end(), Index{-1});
-  if (*least == *most)
+  const Partition parts(components);
+  Indexed<Index> part = parts.of;
+  Indexed<char> is_part(part.size(), 0);  // of the components
+  for (const Index k : part)
+    is_part[k] = parts.sizes[k] >= min_points ? 1 : 0;
+  const auto in_part = [&](Index k) { return is_part[k] != 0; };
+  if (std::all_of(part.begin(), part.end(), in_part))
     return part;
+  if (std::none_of(part.begin(), part.end(), in_part))
+    return Indexed<Index>(part.size(), -1);
 
   SurfaceDistance distance(points, agreed, stars);
-  distance.setSurfaces(in_part);
+  distance.setSurfaces(part, is_part);
   for (const Index i : indicesOf(part))
-    if (in_part[i] == 0)
-      part[i] = distance.ofStray(i) > 0.0 ? -1 : part[distance.nearest(i)];
+    if (!in_part(parts.of[i]))
+      part[i] = distance.ofStray(i) > 0.0 ? -1 : parts.of[distance.nearest(i)];
   return part;
 }
 
 std::vector<StrayPoint> strayPoints(const Positions& points, const Graph& agreed,
                                     const Stars& stars) {
   UnionFind parts = connectedComponents(agreed);
-  const Indexed<Index> piece = representatives(parts, agreed.size());
-  const Indexed<std::size_t> sizes = setSizes(piece);
-  const auto largest = std::max_element(sizes.begin(), sizes.end());
+  const Partition pieces(parts);
+  const auto largest = std::max_element(pieces.sizes.begin(), pieces.sizes.end());
   if (*largest == agreed.size() || *largest < kMinSurface)
     return {};
 
   Indexed<char> is_surface(agreed.size(), 0);  // of the pieces
-  is_surface[static_cast<Index>(largest - sizes.begin())] = 1;
-  markSheets(agreed, piece, sizes, is_surface);
+  is_surface[largest - pieces.sizes.begin()] = 1;
+  markSheets(agreed, pieces, is_surface);
   SurfaceDistance distance(points, agreed, stars);
-  distance.setSurfaces(pointsOf(piece, is_surface));
-  markFinePieces(distance, piece, sizes, is_surface);
-  distance.setSurfaces(pointsOf(piece, is_surface));
+  distance.setSurfaces(pieces.of, is_surface);
+  markFinePieces(distance, pieces, is_surface);
+  distance.setSurfaces(pieces.of, is_surface);
   std::vector<StrayPoint> stray;
   for (const Index i : agreed.nodes())
     if (const double spacings = distance.ofStray(i); spacings > 0.0)

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graph.h"
-#include "indexed.h"
 #include "tangent_stars.h"
 
 #include <cstddef>

@@ -1,15 +1,12 @@
 #include "component_tree.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace spherical_param::internal {
 
 ComponentTree::ComponentTree(const Positions& points)
-    : points_(points), order_(static_cast<std::size_t>(points.cols())) {
-  std::iota(order_.begin(), order_.end(), Index{0});
-  component_ = order_;
+    : points_(points), order_(firstIndices(columnCount(points))), component_(order_) {
   nodes_.reserve(order_.size() / 2 + 1);
   nodes_.push_back({{}, 0, static_cast<Index>(order_.size())});
   // Children are appended behind their parent, so this visits every node after its parent.
@@ -36,8 +33,8 @@ void ComponentTree::build(Node& node) {
   nodes_.push_back(right);
 }
 
-void ComponentTree::setComponents(const std::vector<Index>& component) {
-  std::copy(component.begin(), component.end(), component_.begin());
+void ComponentTree::setComponents(Indexed<Index> component) {
+  component_ = std::move(component);
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
     if (node->left != 0) {
       const Index left = nodes_[node->left].component;
@@ -51,22 +48,12 @@ void ComponentTree::setComponents(const std::vector<Index>& component) {
   }
 }
 
-void ComponentTree::nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const {
-  visit(
-      nodes_[0], i, excluded, [own = component_[i]](Index other) { return other != own; }, best);
-}
-
-void ComponentTree::nearestIn(Index component, Index i, const std::vector<Index>& excluded,
-                              Pair& best) const {
-  visit(
-      nodes_[0], i, excluded,
-      [component](Index other) { return other == component || other == kMixed; }, best);
-}
-
-template <typename Accepts>
 void ComponentTree::visit(const Node& node, Index i, const std::vector<Index>& excluded,
-                          const Accepts& accepts, Pair& best) const {
+                          Index component, Pair& best) const {
   const auto point = points_.col(i);
+  const auto accepts = [&](Index other) {
+    return component == kAnyOther ? other != component_[i] : other == component || other == kMixed;
+  };
   // A node at exactly the best distance may still hold the tie with lower indices.
   if (!accepts(node.component) || node.box.squaredExteriorDistance(point) > best.squared_distance)
     return;
@@ -84,8 +71,8 @@ void ComponentTree::visit(const Node& node, Index i, const std::vector<Index>& e
   const Node& right = nodes_[node.left + 1];
   const bool right_first =
       right.box.squaredExteriorDistance(point) < left.box.squaredExteriorDistance(point);
-  visit(right_first ? right : left, i, excluded, accepts, best);
-  visit(right_first ? left : right, i, excluded, accepts, best);
+  visit(right_first ? right : left, i, excluded, component, best);
+  visit(right_first ? left : right, i, excluded, component, best);
 }
 
 }  // namespace spherical_param::internal

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "indexed.h"
-#include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
 
@@ -32,15 +31,15 @@ public:
   explicit ComponentTree(const Positions& points);
 
   /// \param component n entries, >= 0: the component of each point. Before, each is one by itself.
-  void setComponents(const std::vector<Index>& component);
+  void setComponents(Indexed<Index> component);
 
-  /// Lowers `best` to point i and its nearest point in another component, except those in
-  /// `excluded`, if that pair is less.
-  void nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const;
-
-  /// Lowers `best` to point i and its nearest point in `component`, except those in `excluded`, if
+  static constexpr Index kAnyOther = -1;
+  /// Lowers `best` to point i and its nearest point in a component, except those in `excluded`, if
   /// that pair is less.
-  void nearestIn(Index component, Index i, const std::vector<Index>& excluded, Pair& best) const;
+  void findNearest(Index i, const std::vector<Index>& excluded, Pair& best,
+                   Index component = kAnyOther) const {
+    visit(nodes_[0], i, excluded, component, best);
+  }
 
 private:
   static constexpr Index kLeafSize = 8;
@@ -55,10 +54,7 @@ private:
   };
 
   void build(Node& node);
-
-  /// \param accepts whether points of this component, or of kMixed, are accepted
-  template <typename Accepts>
-  void visit(const Node& node, Index i, const std::vector<Index>& excluded, const Accepts& accepts,
+  void visit(const Node& node, Index i, const std::vector<Index>& excluded, Index component,
              Pair& best) const;
 
   const Positions& points_;

@@ -21,9 +21,6 @@ struct Graph : internal::NeighborRows {
   }
 };
 
-/// \addtogroup neighbor_graph
-/// @{
-
 /// An edge that joins two components of a graph.
 struct Bridge {
   Index from;     ///< node in one component
@@ -46,7 +43,5 @@ struct NeighborGraph {
   /// Ascending; also nodes of the graph. Only of the tangent Delaunay graph.
   std::vector<StrayPoint> stray_points;
 };
-
-/// @}
 
 }  // namespace spherical_param

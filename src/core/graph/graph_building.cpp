@@ -16,16 +16,16 @@ Bridge bridgeOf(const Positions& points, const ComponentTree::Pair& pair) {
 
 /// Appends up to `count` bridges, the shortest first, between ends that are not taken yet.
 ///
-/// \param from         nodes that a bridge may begin at.
-/// \param find_closest (i, taken, pair) lowers the pair to node i and the closest other end.
-template <typename Nodes, typename FindClosest>
-void appendClosest(const Positions& points, const Nodes& from, std::vector<Index> taken, int count,
-                   const FindClosest& find_closest, std::vector<Bridge>& bridges) {
+/// \param from nodes that a bridge may begin at.
+/// \param to   component that it leads to, of the tree.
+template <typename Nodes>
+void appendClosest(const Positions& points, const ComponentTree& tree, const Nodes& from, Index to,
+                   std::vector<Index> taken, int count, std::vector<Bridge>& bridges) {
   for (int k = 0; k < count; ++k) {
     ComponentTree::Pair closest;
     for (const Index i : from)
       if (std::find(taken.begin(), taken.end(), i) == taken.end())
-        find_closest(i, taken, closest);
+        tree.findNearest(i, taken, closest, to);
     if (closest.from < 0)
       break;
     bridges.push_back(bridgeOf(points, closest));
@@ -114,37 +114,25 @@ UnionFind connectedComponents(const NeighborRows& graph) {
   return parts;
 }
 
-Indexed<Index> representatives(UnionFind& sets, std::size_t n) {
-  Indexed<Index> result(n);
-  for (const Index i : indicesOf(result))
-    result[i] = sets.find(i);
-  return result;
-}
-
-Indexed<std::size_t> setSizes(const Indexed<Index>& representative) {
-  Indexed<std::size_t> sizes(representative.size(), 0);
-  for (const Index set : representative)
-    ++sizes[set];
-  return sizes;
-}
-
 std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint) {
   std::vector<Bridge> bridges;
-  Indexed<Index> part = representatives(parts, static_cast<std::size_t>(points.cols()));
-  // A set is represented by its lowest node: 0 if there is only one.
-  while (*std::max_element(part.begin(), part.end()) > 0) {
+  for (;;) {
+    const Partition partition(parts);
+    const Indexed<Index>& part = partition.of;
+    const Indexed<std::size_t>& sizes = partition.sizes;
+    const auto most = std::max_element(sizes.begin(), sizes.end());
+    if (*most == sizes.size())
+      return bridges;
+    const auto largest = static_cast<Index>(most - sizes.begin());
     ComponentTree tree(points);
     tree.setComponents(part);
     const NeighborRows nodes = nodesOfParts(part, part.size());
-    const Indexed<std::size_t> sizes = setSizes(part);
-    const auto largest =
-        static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
 
     Indexed<ComponentTree::Pair> shortest(part.size());
     for (const Index i : indicesOf(part))
       if (part[i] != largest)
-        tree.nearestOther(i, {}, shortest[part[i]]);
+        tree.findNearest(i, {}, shortest[part[i]]);
     std::sort(shortest.begin(), shortest.end());
     std::vector<Bridge> joints;
     for (const ComponentTree::Pair& pair : shortest) {
@@ -159,16 +147,10 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
       const auto [smaller, other] =
           std::minmax({part[joint.from], part[joint.to]},
                       [&](Index a, Index b) { return sizes[a] < sizes[b]; });
-      appendClosest(
-          points, nodes.row(smaller), {joint.from, joint.to}, bridges_per_joint - 1,
-          [&, to = other](Index i, const std::vector<Index>& taken, ComponentTree::Pair& closest) {
-            tree.nearestIn(to, i, taken, closest);
-          },
-          bridges);
+      appendClosest(points, tree, nodes.row(smaller), other, {joint.from, joint.to},
+                    bridges_per_joint - 1, bridges);
     }
-    part = representatives(parts, part.size());
   }
-  return bridges;
 }
 
 std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count) {
@@ -191,15 +173,8 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
     std::vector<Index> from(from_inside ? begin : search.order.begin(), from_inside ? end : begin);
     if (!from_inside)
       from.insert(from.end(), end, search.order.end());
-    appendClosest(
-        points, from, {search.parent[top]}, count,
-        [&](Index i, const std::vector<Index>& taken, ComponentTree::Pair& closest) {
-          if (from_inside)
-            tree.nearestOther(i, taken, closest);
-          else
-            tree.nearestIn(top, i, taken, closest);
-        },
-        bridges);
+    appendClosest(points, tree, from, from_inside ? ComponentTree::kAnyOther : top,
+                  {search.parent[top]}, count, bridges);
   }
   return bridges;
 }
@@ -214,6 +189,7 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_
   std::sort(added.begin(), added.end(), [](const Bridge& a, const Bridge& b) {
     return std::tuple(a.from, a.to, a.length) < std::tuple(b.from, b.to, b.length);
   });
+  nodes = std::max(nodes, graph.size());
   Graph result;
   result.offsets.reserve(nodes + 1);
   result.neighbors.reserve(graph.neighbors.size() + added.size());
@@ -239,14 +215,6 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_
     result.endRow();
   }
   return result;
-}
-
-Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
-  return withEdges(graph, edges, graph.size());
-}
-
-Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges) {
-  return withEdges({}, edges, nodes);
 }
 
 }  // namespace spherical_param::internal

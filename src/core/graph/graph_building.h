@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graph.h"
-#include "indexed.h"
 #include "parallel.h"
 #include "union_find.h"
 
@@ -47,12 +46,6 @@ double nodeSpacing(const Graph& graph, Index node);
 /// The connected components of a graph.
 UnionFind connectedComponents(const NeighborRows& graph);
 
-/// The representative of the set of each of 0 ... n - 1.
-Indexed<Index> representatives(UnionFind& sets, std::size_t n);
-
-/// Number of elements of each set, at its representative; 0 elsewhere.
-Indexed<std::size_t> setSizes(const Indexed<Index>& representative);
-
 /// Minimum spanning tree of the components by their closest pairs of points (Boruvka 1926): in each
 /// round every component but the largest finds its shortest edge to another one.
 ///
@@ -72,10 +65,8 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
 
 /// The graph with further edges. Of those that repeat each other the shortest is added, and none
 /// that repeats one of the graph.
-Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);
-/// \param nodes of the result, the first ones those of the graph.
-Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_t nodes);
-/// The graph of some edges alone, as withEdges() adds them.
-Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges);
+///
+/// \param nodes minimum number of nodes of the result, the first ones those of the graph.
+Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_t nodes = 0);
 
 }  // namespace spherical_param::internal

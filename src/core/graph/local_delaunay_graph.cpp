@@ -4,7 +4,6 @@
 #include "graph_building.h"
 #include "progress.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,21 +14,20 @@ namespace {
 // The experiments are on 13 models and 13 shapes of up to 60,000 points, on 25 awkward clouds (few
 // points, lines of a scanner, tubes, parts, volumes) and on 35 open, partial and raw scans.
 
-/// Joins points without a tangent plane that only one of them finds near: their neighbourhood is
-/// the same from both ends, but for the ends of the lists.
-void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph) {
+/// Edges between points without a tangent plane that only one of them finds near: their
+/// neighbourhood is the same from both ends, but for the ends of the lists.
+std::vector<Bridge> edgesWithoutPlane(const Positions& points, const Stars& stars) {
   std::vector<Bridge> edges;
-  for (const Index i : graph.nodes())
-    if (!stars.kind[i].tangent_plane)
+  for (const Index i : indicesOf(stars))
+    if (!stars[i].tangent_plane)
       for (const Index j : stars.of(i))
-        if (!stars.kind[j].tangent_plane && !stars.of(j).contains(i))
+        if (!stars[j].tangent_plane && !stars.of(j).contains(i))
           edges.push_back({i, j, edgeLength(points, i, j)});
-  if (!edges.empty())
-    graph = withEdges(graph, edges);
+  return edges;
 }
 
-/// Gives points of low degree their whole star and their nearest points.
-void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
+/// The edges from points of low degree to their whole star and their nearest points.
+std::vector<Bridge> edgesOfWeak(const Positions& points, const Stars& stars, const Graph& graph) {
   // Degree below which a point is repaired. Below 4 would be too generous: it brings back edges
   // that one star alone saw, across gaps; a model then has 1,203 self-intersections instead of 0.
   // With 0, a pair of elephants has 2,093,249 instead of 77,968.
@@ -46,35 +44,14 @@ void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
     std::vector<Index> nearest;
     while (nearest.size() < min_degree) {
       ComponentTree::Pair pair;
-      tree->nearestOther(i, nearest, pair);
+      tree->findNearest(i, nearest, pair);
       if (pair.from < 0)
         break;  // there are no others
       nearest.push_back(pair.from == i ? pair.to : pair.from);
       edges.push_back({i, nearest.back(), edgeLength(points, i, nearest.back())});
     }
   }
-  if (!edges.empty())
-    graph = withEdges(graph, edges);
-}
-
-/// Joins components, and ties each part that only one node joins to the others: it would collapse.
-/// Of parts in a chain only the ends: needles have such chains, and gained nothing from more
-/// rounds.
-void connect(const Positions& points, const FractionReport& report, NeighborGraph& result) {
-  // Bridges of each pair of components that are joined: one alone lets a part dangle, and collapse
-  // in the embedding. With 1 or 2, two spheres have 962 or 780 self-intersections instead of 0.
-  constexpr int bridges_per_joint = 3;
-  reportFraction(report, 0.0);
-  UnionFind parts = connectedComponents(result.graph);
-  result.bridges = shortestBridges(points, parts, bridges_per_joint);
-  if (!result.bridges.empty())
-    result.graph = withEdges(result.graph, result.bridges);
-  const std::vector<Bridge> bridges =
-      articulationBridges(points, result.graph, bridges_per_joint - 1);
-  if (bridges.empty())
-    return;
-  result.graph = withEdges(result.graph, bridges);
-  result.bridges.insert(result.bridges.end(), bridges.begin(), bridges.end());
+  return edges;
 }
 
 }  // namespace
@@ -95,13 +72,29 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars, Graph agreed,
                                       const Execution& execution) {
+  // Bridges of each pair of components that are joined: one alone lets a part dangle, and collapse
+  // in the embedding. With 1 or 2, two spheres have 962 or 780 self-intersections instead of 0.
+  constexpr int bridges_per_joint = 3;
   NeighborGraph result;
   if (stars.size() == 0)
     return result;
-  result.graph = std::move(agreed);
-  joinWithoutPlane(points, stars, result.graph);
-  repairWeak(points, stars, result.graph);
-  connect(points, reportOf(execution, "graph"), result);
+  Graph& graph = result.graph;
+  graph = std::move(agreed);
+  const auto add = [&](const std::vector<Bridge>& edges) {
+    if (!edges.empty())
+      graph = withEdges(graph, edges);
+  };
+  add(edgesWithoutPlane(points, stars));
+  add(edgesOfWeak(points, stars, graph));
+  reportFraction(reportOf(execution, "graph"), 0.0);
+  UnionFind parts = connectedComponents(graph);
+  result.bridges = shortestBridges(points, parts, bridges_per_joint);
+  add(result.bridges);
+  // Parts that only one node joins to the others are tied, too: they would collapse. Of parts in a
+  // chain only the ends: needles have such chains, and gained nothing from more rounds.
+  const std::vector<Bridge> ties = articulationBridges(points, graph, bridges_per_joint - 1);
+  add(ties);
+  result.bridges.insert(result.bridges.end(), ties.begin(), ties.end());
   return result;
 }
 

@@ -1,16 +1,14 @@
 #pragma once
 
+#include "rows.h"
 #include "spherical_param/execution.h"
-#include "spherical_param/types.h"
 
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace spherical_param {
-
-/// \addtogroup neighbor_graph
-/// @{
 
 /// Builds a k-d tree of points, in double precision.
 ///
@@ -23,14 +21,23 @@ namespace spherical_param {
 /// Cost: O(n log n), and O(log n) for each query, typically.
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
 
-/// The answer of a search among n points for the `count` nearest neighbours of each.
-NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count);
+/// A neighbour of a point.
+struct NearPoint {
+  double squared_distance;
+  Index point;
+  Eigen::Vector3d offset;  ///< from the other point
 
-/// The nearest others of point i in its list, at most `count`: nearest first, ties by index.
+  bool operator<(const NearPoint& other) const {
+    return std::pair(squared_distance, point) < std::pair(other.squared_distance, other.point);
+  }
+};
+
+/// The nearest others of point i in a list, at most `count`: nearest first, ties by index.
 ///
-/// \param lists in any order, perhaps with repetitions and the point itself.
-std::vector<Index> nearestOthers(const Positions& points, const NeighborLists& lists, Index i,
-                                 std::size_t count = std::numeric_limits<std::size_t>::max());
+/// \param list in any order, perhaps with repetitions and the point itself.
+std::vector<NearPoint> nearestOthers(const Positions& points, Index i,
+                                     const internal::Row<Index>& list,
+                                     std::size_t count = std::numeric_limits<std::size_t>::max());
 
 /// Neighbour lists of all nodes, and a search for longer lists.
 struct Neighbors {
@@ -47,7 +54,5 @@ struct Neighbors {
 /// \throw InvalidInput for lists of more than 2^31 entries in all; Cancelled.
 NeighborLists findNearestNeighbors(const Positions& points, int count,
                                    const Execution& execution = {});
-
-/// @}
 
 }  // namespace spherical_param

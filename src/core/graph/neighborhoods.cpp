@@ -2,7 +2,6 @@
 
 #include "cloud_surfaces.h"
 #include "local_delaunay_graph.h"
-#include "neighbor_search.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
 
@@ -11,12 +10,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-OrderedPoints orderInputs(const Positions& cloud, const std::vector<Index>& inputs, int threads) {
-  return static_cast<Eigen::Index>(inputs.size()) == cloud.cols()
-             ? orderCheckedPoints(cloud, threads)
-             : orderCheckedPoints(cloud(Eigen::all, inputs), threads);
-}
 
 /// Checks the answer of a caller's search: `count` lists of indices in [0, n).
 void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
@@ -42,7 +35,7 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& 
                    [&](Index position) { return inputs[position]; });
     return result;
   };
-  const Indexed<Index> points = in_cloud(nodes.distinct.input_of_vertex);  // ascending
+  const Indexed<Index> points = in_cloud(nodes.input_of_vertex);  // ascending
   const Indexed<Index> input_of_node = in_cloud(nodes.input_of_node);
   Indexed<Index> node_of_input(static_cast<std::size_t>(points.back()) + 1, -1);
   for (const Index node : indicesOf(input_of_node))
@@ -80,12 +73,14 @@ Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& i
                              const Options& options, const NeighborSearchFactory& search_of,
                              const Execution& execution)
     : inputs_(inputs.begin(), inputs.end()),
-      nodes_(orderInputs(cloud, inputs_, execution.threads)) {
+      nodes_(inputs.size() == columnCount(cloud)
+                 ? orderCheckedPoints(cloud, execution.threads)
+                 : orderCheckedPoints(cloud(Eigen::all, inputs), execution.threads)) {
   neighbors_.search = search_of ? searchOfCaller(nodes_, inputs_, search_of, execution)
                                 : makeNeighborSearch(nodes_.points, execution);
   // The tangent Delaunay graph searches for up to 32 where 12 do not certify its cells.
-  neighbors_.lists = searchAll(neighbors_.search, nodes_.input_of_node.size(),
-                               options.method == Method::Paper ? options.paper.k : 12);
+  neighbors_.lists = neighbors_.search(firstIndices(nodes_.input_of_node.size()),
+                                       options.method == Method::Paper ? options.paper.k : 12);
 }
 
 void Neighborhoods::findStars(const Execution& execution) {
@@ -97,7 +92,7 @@ void Neighborhoods::findStars(const Execution& execution) {
 
 void Neighborhoods::release() {
   neighbors_ = {};
-  stars_ = Stars();
+  stars_ = {};
   agreed_ = {};
 }
 

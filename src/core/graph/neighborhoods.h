@@ -1,8 +1,6 @@
 #pragma once
 
 #include "graph.h"
-#include "indexed.h"
-#include "neighbor_search.h"
 #include "ordered_points.h"
 #include "spherical_param/options.h"
 #include "tangent_stars.h"
@@ -39,8 +37,7 @@ public:
   OrderedPoints& nodes() { return nodes_; }
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }
-  const Graph& agreed() const { return agreed_; }  ///< \see agreedGraph
-  Graph& agreed() { return agreed_; }
+  Graph& agreed() { return agreed_; }  ///< \see agreedGraph
 
   /// The inputs of marked nodes. \param marked one entry for each node.
   std::vector<Index> inputsOf(const Indexed<char>& marked) const;

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <string>
 #include <tuple>
 
 namespace spherical_param::internal {
@@ -47,17 +45,15 @@ Indexed<Index> mergeDuplicates(const Positions& points, Indexed<Place>& places,
 }
 
 /// Numbers the distinct positions by their first input points.
-DistinctPoints numberVertices(const Indexed<Index>& first_of_input) {
-  DistinctPoints distinct;
-  distinct.vertex_of_input.reserve(first_of_input.size());
+void numberVertices(const Indexed<Index>& first_of_input, OrderedPoints& result) {
+  result.vertex_of_input.reserve(first_of_input.size());
   for (const Index i : indicesOf(first_of_input)) {
     const Index first = first_of_input[i];
-    const auto count = static_cast<Index>(distinct.input_of_vertex.size());
-    distinct.vertex_of_input.push_back(first == i ? count : distinct.vertex_of_input[first]);
+    result.vertex_of_input.push_back(first == i ? result.input_of_vertex.count()
+                                                : result.vertex_of_input[first]);
     if (first == i)
-      distinct.input_of_vertex.push_back(i);
+      result.input_of_vertex.push_back(i);
   }
-  return distinct;
 }
 
 }  // namespace
@@ -78,14 +74,14 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   const MortonCurve curve(low, high);
   Indexed<Place> places =
       sortedPlaces(n, threads, [&](Index i) { return curve.key(points.col(i)); });
-  result.distinct = numberVertices(mergeDuplicates(points, places, result.input_of_node));
+  numberVertices(mergeDuplicates(points, places, result.input_of_node), result);
   places = {};
   const std::size_t count = result.input_of_node.size();
   result.vertex_of_node.resize(count);
   result.points.resize(3, static_cast<Eigen::Index>(count));
   forEachIndex(count, threads, {}, [&](Index node) {
     const Index input = result.input_of_node[node];
-    result.vertex_of_node[node] = result.distinct.vertex_of_input[input];
+    result.vertex_of_node[node] = result.vertex_of_input[input];
     result.points.col(node) = timesPowerOfTwo(points.col(input), -result.exponent);
   });
   return result;
@@ -95,9 +91,9 @@ Indexed<Index> nodesOfInput(const OrderedPoints& nodes) {
   Indexed<Index> node_of_vertex(nodes.vertex_of_node.size());
   for (const Index node : indicesOf(node_of_vertex))
     node_of_vertex[nodes.vertex_of_node[node]] = node;
-  Indexed<Index> result(nodes.distinct.vertex_of_input.size());
+  Indexed<Index> result(nodes.vertex_of_input.size());
   for (const Index input : indicesOf(result))
-    result[input] = node_of_vertex[nodes.distinct.vertex_of_input[input]];
+    result[input] = node_of_vertex[nodes.vertex_of_input[input]];
   return result;
 }
 

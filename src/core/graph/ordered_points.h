@@ -1,8 +1,6 @@
 #pragma once
 
 #include "indexed.h"
-#include "point_set.h"
-#include "spherical_param/types.h"
 
 #include <string>
 #include <vector>
@@ -16,12 +14,16 @@ struct OrderedPoints {
   /// points stay distinct, and later products do not overflow.
   Positions points;
   int exponent = 0;
-  Indexed<Index> input_of_node;   ///< v entries, the first input point there
-  Indexed<Index> vertex_of_node;  ///< v entries, a permutation
-  DistinctPoints distinct;        ///< the same points, numbered by the first input point
+  Indexed<Index> input_of_node;  ///< v entries, the first input point there
+
+  // Vertices are the same points, numbered by the first input point.
+  Indexed<Index> vertex_of_node;   ///< v entries, a permutation
+  Indexed<Index> vertex_of_input;  ///< n entries
+  Indexed<Index> input_of_vertex;  ///< v entries, ascending
 };
 
-/// Finds the distinct points and puts them in the order of mortonOrder(), at the cost of one sort.
+/// Finds the points that are not equal (-0 equals +0) and puts them in the order of mortonOrder(),
+/// at the cost of one sort.
 ///
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);

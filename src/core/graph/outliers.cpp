@@ -3,7 +3,6 @@
 #include "neighbor_search.h"
 #include "progress.h"
 #include "quadric_fit.h"
-#include "rows.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -50,22 +49,21 @@ Indexed<char> nearOutliers(const Positions& points, const Execution& execution) 
   const int threads = threadCount(execution.threads, lists.size());
   Indexed<double> spacing(lists.size());
   forEachIndex(lists.size(), threads, {}, [&](Index i) {
-    const Index fourth = nearestOthers(points, lists, i, kFittedNeighbors)[3];  // the median of six
-    spacing[i] = (points.col(fourth) - points.col(i)).norm();
+    // The fourth is the median of six.
+    spacing[i] = std::sqrt(nearestOthers(points, i, listOf(lists, i), 4)[3].squared_distance);
   });
   forEachIndex<QuadricFit>(lists.size(), threads, {}, [&](QuadricFit& quadric, Index i) {
-    const std::vector<Index> others = nearestOthers(points, lists, i, kFittedNeighbors);
     std::vector<double> spacings;
-    spacings.reserve(others.size());
-    for (const Index j : others)
-      spacings.push_back(spacing[j]);
+    std::vector<Eigen::Vector3d> offsets;
+    for (const NearPoint& near : nearestOthers(points, i, listOf(lists, i), kFittedNeighbors)) {
+      spacings.push_back(spacing[near.point]);
+      offsets.push_back(near.offset);
+    }
     const double unit = medianOf(spacings);
     if (!(unit > 0.0))
       return;
-    std::vector<Eigen::Vector3d> offsets;
-    offsets.reserve(others.size());
-    for (const Index j : others)
-      offsets.emplace_back((points.col(j) - points.col(i)) / unit);
+    for (Eigen::Vector3d& offset : offsets)
+      offset /= unit;
     marked[i] = isOff(offsets, quadric) ? 1 : 0;
   });
   return marked;
@@ -99,8 +97,10 @@ public:
   Scoring(const Positions& points, const NeighborLists& lists, int threads)
       : scores(lists.size(), 0.0), points_(points), threads_(threads), neighbors_(lists.size()),
         mean_distance_(lists.size()) {
-    forEachIndex(lists.size(), threads_, {},
-                 [&](Index i) { neighbors_[i] = nearestOthers(points_, lists, i); });
+    forEachIndex(lists.size(), threads_, {}, [&](Index i) {
+      for (const NearPoint& near : nearestOthers(points_, i, listOf(lists, i)))
+        neighbors_[i].push_back(near.point);
+    });
   }
 
   /// Takes the given points out of all lists, and computes the scores of the others.

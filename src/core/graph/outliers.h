@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graph.h"
-#include "indexed.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
 

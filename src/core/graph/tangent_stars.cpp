@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace spherical_param::internal {
 namespace {
@@ -28,17 +27,6 @@ constexpr Index kTangentNeighbors = 10;
 /// lines has some 20,000 self-intersections instead of 3; with 64, 0, but the search takes longer.
 constexpr Index kMaxCandidates = 32;
 
-struct Candidate {
-  double squared_distance;
-  Index node;
-  Eigen::Vector3d offset;  ///< from the point
-
-  bool operator<(const Candidate& other) const {
-    return squared_distance < other.squared_distance ||
-           (squared_distance == other.squared_distance && node < other.node);
-  }
-};
-
 /// Voronoi cell of the origin in the plane: a convex polygon that is cut by bisectors.
 class VoronoiCell {
 public:
@@ -46,22 +34,22 @@ public:
 
   /// A square, in place of the unbounded cell.
   void reset(double half_size) {
-    corners_ = {{half_size, half_size, kBox},
-                {-half_size, half_size, kBox},
-                {-half_size, -half_size, kBox},
-                {half_size, -half_size, kBox}};
+    corners_ = {{{half_size, half_size}, kBox},
+                {{-half_size, half_size}, kBox},
+                {{-half_size, -half_size}, kBox},
+                {{half_size, -half_size}, kBox}};
     squared_radius_ = 2.0 * half_size * half_size;
   }
 
-  /// Cuts off what is nearer to `site` than to the origin.
-  void cut(double x, double y, Index site) {
-    const double half_square = 0.5 * (x * x + y * y);
+  /// Cuts off what is nearer to `place` than to the origin.
+  void cut(const Eigen::Vector2d& place, Index site) {
+    const double half_square = 0.5 * place.squaredNorm();
     const double tolerance = kTie * half_square;
     const std::size_t count = corners_.size();
     sides_.resize(count);
     bool cuts = false;
     for (std::size_t k = 0; k < count; ++k) {
-      sides_[k] = corners_[k].x * x + corners_[k].y * y - half_square;
+      sides_[k] = corners_[k].place.dot(place) - half_square;
       cuts = cuts || sides_[k] > tolerance;
     }
     if (!cuts)
@@ -76,18 +64,18 @@ public:
         continue;
       // The side of the new edge begins where the polygon leaves; the old one goes on where it
       // comes back.
-      const double inner = inside ? sides_[k] : sides_[next];
-      const double outer = inside ? sides_[next] : sides_[k];
-      const Corner& from = inside ? corners_[k] : corners_[next];
-      const Corner& to = inside ? corners_[next] : corners_[k];
-      const double fraction = inner < 0.0 ? inner / (inner - outer) : 0.0;
-      cut_.push_back({from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y),
-                      inside ? site : corners_[k].site});
+      const std::size_t inner = inside ? k : next;
+      const std::size_t outer = inside ? next : k;
+      const double fraction =
+          sides_[inner] < 0.0 ? sides_[inner] / (sides_[inner] - sides_[outer]) : 0.0;
+      const Eigen::Vector2d& from = corners_[inner].place;
+      cut_.push_back(
+          {from + fraction * (corners_[outer].place - from), inside ? site : corners_[k].site});
     }
     corners_.swap(cut_);
     squared_radius_ = 0.0;
     for (const Corner& corner : corners_)
-      squared_radius_ = std::max(squared_radius_, corner.x * corner.x + corner.y * corner.y);
+      squared_radius_ = std::max(squared_radius_, corner.place.squaredNorm());
   }
 
   double squaredRadius() const { return squared_radius_; }
@@ -103,17 +91,15 @@ public:
     for (std::size_t k = 0; k < corners_.size(); ++k) {
       const Corner& begin = corners_[k];
       const Corner& end = corners_[k + 1 < corners_.size() ? k + 1 : 0];
-      const double x = end.x - begin.x;
-      const double y = end.y - begin.y;
-      if (begin.site != kBox && x * x + y * y > kTie * kTie * squared_radius_)
+      if (begin.site != kBox &&
+          (end.place - begin.place).squaredNorm() > kTie * kTie * squared_radius_)
         found(begin.site);
     }
   }
 
 private:
   struct Corner {
-    double x;
-    double y;
+    Eigen::Vector2d place;
     Index site;  ///< whose bisector the edge to the next corner is on
   };
 
@@ -123,29 +109,9 @@ private:
   double squared_radius_ = 0.0;
 };
 
-/// The nearest candidates of a list, sorted.
-void collectCandidates(const Positions& points, Index i, const Row<Index>& list,
-                       std::vector<Candidate>& candidates) {
-  candidates.clear();
-  for (const Index j : list) {
-    if (j == i)
-      continue;
-    const Eigen::Vector3d offset = points.col(j) - points.col(i);
-    candidates.push_back({offset.squaredNorm(), j, offset});
-  }
-  if (!std::is_sorted(candidates.begin(), candidates.end()))
-    std::sort(candidates.begin(), candidates.end());
-  candidates.erase(
-      std::unique(candidates.begin(), candidates.end(),
-                  [](const Candidate& a, const Candidate& b) { return a.node == b.node; }),
-      candidates.end());
-  if (candidates.size() > kMaxCandidates)
-    candidates.erase(candidates.begin() + kMaxCandidates, candidates.end());
-}
-
 /// Axes of the `count` nearest candidates about their centroid, by ascending variance. False if
 /// they span no plane that can be trusted.
-bool findTangentPlane(const std::vector<Candidate>& candidates, std::size_t count,
+bool findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t count,
                       Eigen::Matrix3d& axes, bool& is_line) {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < count; ++c)
@@ -174,20 +140,20 @@ bool findTangentPlane(const std::vector<Candidate>& candidates, std::size_t coun
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
 /// diameter the two are. It needs no plane, is the same from both ends, and is decided by the
 /// nearest points alone.
-void findGabrielNeighbors(const std::vector<Candidate>& candidates, Index* star, Index& count) {
-  for (const Candidate& candidate : candidates) {
+void findGabrielNeighbors(const std::vector<NearPoint>& candidates, Index* star, Index& count) {
+  for (const NearPoint& candidate : candidates) {
     const bool blocked =
-        std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-          return other.node != candidate.node &&
+        std::any_of(candidates.begin(), candidates.end(), [&](const NearPoint& other) {
+          return other.point != candidate.point &&
                  other.squared_distance <= (1.0 + kTie) * other.offset.dot(candidate.offset);
         });
     if (!blocked)
-      star[count++] = candidate.node;
+      star[count++] = candidate.point;
   }
 }
 
 /// Writes the Voronoi neighbours in the tangent plane. Returns whether they are certified.
-bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen::Matrix3d& axes,
+bool findVoronoiNeighbors(const std::vector<NearPoint>& candidates, const Eigen::Matrix3d& axes,
                           VoronoiCell& cell, Index* star, Index& count) {
   const double squared_reach = candidates.back().squared_distance;
   // A cell that is larger ends there: sites beyond would be neighbours across a gap.
@@ -197,16 +163,14 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
   constexpr double max_candidate_slope = 0.85;
   // In terms of the cosine.
   const double least_fraction = 1.0 - max_candidate_slope * max_candidate_slope;
-  for (const Candidate& candidate : candidates) {
+  for (const NearPoint& candidate : candidates) {
     if (candidate.squared_distance > 4.0 * cell.squaredRadius())
       break;
-    const double x = axes.col(1).dot(candidate.offset);
-    const double y = axes.col(2).dot(candidate.offset);
-    const double fraction = (x * x + y * y) / candidate.squared_distance;
-    if (!(fraction >= least_fraction))
-      continue;
-    const double stretch = 1.0 / std::sqrt(fraction);
-    cell.cut(stretch * x, stretch * y, candidate.node);
+    const Eigen::Vector2d place(axes.col(1).dot(candidate.offset),
+                                axes.col(2).dot(candidate.offset));
+    const double fraction = place.squaredNorm() / candidate.squared_distance;
+    if (fraction >= least_fraction)
+      cell.cut(1.0 / std::sqrt(fraction) * place, candidate.point);
   }
   cell.forEachSite([&](Index site) {
     // Round-off at corners may leave two edges of one site.
@@ -219,11 +183,12 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
 /// Writes the star of the point whose sorted candidates are given, ascending.
 ///
 /// \param others number of other points there are
-StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, VoronoiCell& cell,
-                  Index* star, Index& count) {
-  StarKind kind;
-  kind.candidates = static_cast<Index>(candidates.size());
-  count = 0;
+/// \param nodes  of the star
+void findStar(const std::vector<NearPoint>& candidates, std::size_t others, VoronoiCell& cell,
+              Index* nodes, Star& star) {
+  star.candidates = static_cast<Index>(candidates.size());
+  star.count = 0;
+  star.tangent_plane = false;
   const bool complete = candidates.size() >= others;
   Eigen::Matrix3d axes;
   bool is_line = true;  // or too few points, of which more are wanted as well
@@ -231,24 +196,16 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, 
   const std::size_t all = candidates.size() < kTangentNeighbors ? 0 : candidates.size();
   for (std::size_t span = 0; is_line && span < all;) {
     span = std::min(std::max(2 * span, std::size_t{kTangentNeighbors}), all);
-    kind.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
+    star.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
   }
-  if (kind.tangent_plane) {
-    const bool certified = findVoronoiNeighbors(candidates, axes, cell, star, count);
-    kind.wants_more = !certified && !complete;
-  } else {
-    kind.wants_more = is_line && !complete;
-    findGabrielNeighbors(candidates, star, count);
-  }
-  std::sort(star, star + count);
-  return kind;
+  bool certified = !is_line;
+  if (star.tangent_plane)
+    certified = findVoronoiNeighbors(candidates, axes, cell, nodes, star.count);
+  else
+    findGabrielNeighbors(candidates, nodes, star.count);
+  star.wants_more = !certified && !complete;
+  std::sort(nodes, nodes + star.count);
 }
-
-/// Working memory.
-struct Scratch {
-  std::vector<Candidate> candidates;
-  VoronoiCell cell;
-};
 
 /// Finds the stars of some nodes from lists in their order. Lists that are no longer than the one
 /// before change nothing.
@@ -257,15 +214,15 @@ void findStarsOf(const Indexed<Index>& nodes, const Positions& points, const Nei
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   reportFraction(report, 0.0);
-  forEachIndex<Scratch>(lists.size(), threads, report, [&](Scratch& scratch, Index list) {
+  forEachIndex<VoronoiCell>(lists.size(), threads, report, [&](VoronoiCell& cell, Index list) {
     const Index i = nodes[list];
-    std::vector<Candidate>& candidates = scratch.candidates;
-    collectCandidates(points, i, listOf(lists, list), candidates);
-    if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
+    const std::vector<NearPoint> candidates =
+        nearestOthers(points, i, listOf(lists, list), kMaxCandidates);
+    Star& star = stars.of_node[i];
+    if (static_cast<Index>(candidates.size()) <= star.candidates)
       return;
-    stars.begin[i] = base + lists.offsets[static_cast<std::size_t>(list)];
-    stars.kind[i] = findStar(candidates, stars.size() - 1, scratch.cell,
-                             stars.nodes.data() + stars.begin[i], stars.count[i]);
+    star.begin = base + lists.offsets[static_cast<std::size_t>(list)];
+    findStar(candidates, stars.size() - 1, cell, stars.nodes.data() + star.begin, star);
   });
 }
 
@@ -274,13 +231,13 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
                    const FractionReport& report, Stars& stars) {
   const Index most = std::min(kMaxCandidates, static_cast<Index>(stars.size()) - 1);
   Index count = kTangentNeighbors / 2;
-  for (const StarKind& kind : stars.kind)
-    count = std::max(count, kind.candidates);
+  for (const Star& star : stars.of_node)
+    count = std::max(count, star.candidates);
   while (count < most) {
     count = std::min(2 * count, most);
     Indexed<Index> open;
-    for (const Index i : indicesOf(stars.kind))
-      if (stars.kind[i].wants_more)
+    for (const Index i : indicesOf(stars))
+      if (stars[i].wants_more)
         open.push_back(i);
     if (open.empty())
       break;
@@ -292,14 +249,13 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
 }  // namespace
 
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution) {
-  Stars stars(static_cast<std::size_t>(points.cols()));
+  Stars stars;
+  stars.of_node.resize(columnCount(points));
   if (stars.size() == 0)
     return stars;
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "graph");
-  Indexed<Index> all(stars.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  findStarsOf(all, points, neighbors.lists, threads, report, stars);
+  findStarsOf(firstIndices(stars.size()), points, neighbors.lists, threads, report, stars);
   if (neighbors.search)
     searchForMore(points, neighbors.search, threads, report, stars);
   return stars;

@@ -1,41 +1,32 @@
 #pragma once
 
-#include "indexed.h"
 #include "neighbor_search.h"
-#include "rows.h"
-#include "spherical_param/execution.h"
-#include "spherical_param/types.h"
 
 #include <cstddef>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// How the star of a point was found.
-struct StarKind {
+/// The star of a point, and how it was found.
+struct Star {
+  std::size_t begin = 0;       ///< its first node in Stars::nodes
+  Index count = 0;             ///< of its nodes, ascending
   Index candidates = -1;       ///< number of known nearest points; -1: not processed
   bool tangent_plane = false;  ///< the tangent plane is reliable
   bool wants_more = false;     ///< more candidates may help: the star is not certified
 };
 
 /// The star of each node: its Voronoi neighbours in its tangent plane, or its neighbours in the
-/// Gabriel graph if the nearest points span no plane. The star of node i is nodes[begin[i]] ...
-/// nodes[begin[i] + count[i] - 1], ascending.
+/// Gabriel graph if the nearest points span no plane.
 struct Stars {
-  explicit Stars(std::size_t n = 0) : begin(n), count(n), kind(n) {}
-
-  Indexed<std::size_t> begin;
-  Indexed<Index> count;
+  Indexed<Star> of_node;
   std::vector<Index> nodes;
-  Indexed<StarKind> kind;
 
-  std::size_t size() const { return begin.size(); }
-  /// Positions of a star in `nodes`.
-  NumberRange<std::size_t> entries(Index i) const {
-    return {begin[i], begin[i] + static_cast<std::size_t>(count[i])};
-  }
+  std::size_t size() const { return of_node.size(); }
+  const Star& operator[](Index i) const { return of_node[i]; }
   Row<Index> of(Index i) const {
-    return {nodes.data() + begin[i], nodes.data() + begin[i] + count[i]};
+    const Index* begin = nodes.data() + of_node[i].begin;
+    return {begin, begin + of_node[i].count};
   }
 };
 

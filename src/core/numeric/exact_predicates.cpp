@@ -1,15 +1,14 @@
 #include "exact_predicates.h"
 
 #include "indexed.h"
+#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -114,6 +113,17 @@ Integer determinant(const Vector3& a, const Vector3& b, const Vector3& c) {
   return a[2] * minor(b, c) + b[2] * minor(c, a) + c[2] * minor(a, b);
 }
 
+bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto flat = [&](const Eigen::Vector3d& p) {
+      return Eigen::Vector2d(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+    };
+    if (orientation2d(flat(a), flat(b), flat(c)) != 0)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 int volumeSign(const Positions& points, const Triangles& triangles) {
@@ -154,6 +164,27 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
   for (Eigen::Index t = 0; t < count; ++t)
     exact = exact + determinant(wide(t, 0), wide(t, 1), wide(t, 2));
   return exact.sign();
+}
+
+bool areCoplanar(const Positions& points) {
+  const Eigen::Index n = points.cols();
+  if (n < 4)
+    return true;
+  if (!points.allFinite())
+    throw InvalidInput("areCoplanar: a coordinate is not finite; remove such points first");
+  // The first points that span a line and a plane, if any do.
+  const Eigen::Vector3d a = points.col(0);
+  Eigen::Index i = 1;
+  while (i < n && points.col(i) == a)
+    ++i;
+  const Eigen::Vector3d b = points.col(i % n);
+  while (i < n && areCollinear(a, b, points.col(i)))
+    ++i;
+  const Eigen::Vector3d c = points.col(i % n);
+  for (; i < n; ++i)
+    if (orientation3d(a, b, c, points.col(i)) != 0)
+      return false;
+  return true;
 }
 
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,

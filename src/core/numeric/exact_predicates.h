@@ -28,6 +28,14 @@ int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
 /// \param triangles 3 x m, closed.
 int volumeSign(const Positions& points, const Triangles& triangles);
 
+/// Whether all points lie exactly in one plane (or line, or point); true for fewer than four. A
+/// cloud that is flat but for rounding is not coplanar.
+///
+/// \param points 3 x n, finite, of any magnitude.
+/// \throw InvalidInput if a coordinate of four points and more is not finite.
+/// Cost: O(n); some microseconds for each point of an oblique plane.
+bool areCoplanar(const Positions& points);
+
 /// Half a unit in the last place of 1.
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 

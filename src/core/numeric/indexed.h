@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -32,6 +33,13 @@ public:
 template <typename Matrix>
 std::size_t columnCount(const Matrix& matrix) {
   return static_cast<std::size_t>(matrix.cols());
+}
+
+/// The numbers 0 ... n - 1.
+inline Indexed<Index> firstIndices(std::size_t n) {
+  Indexed<Index> indices(n);
+  std::iota(indices.begin(), indices.end(), Index{0});
+  return indices;
 }
 
 /// Sorts values and leaves each once.

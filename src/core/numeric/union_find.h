@@ -1,11 +1,8 @@
 #pragma once
 
 #include "indexed.h"
-#include "spherical_param/types.h"
 
-#include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -14,9 +11,7 @@ namespace spherical_param::internal {
 /// do not depend on the order of the unions.
 class UnionFind {
 public:
-  explicit UnionFind(std::size_t n) : parent_(n) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
+  explicit UnionFind(std::size_t n) : parent_(firstIndices(n)) {}
 
   Index find(Index i) {
     while (parent_[i] != i) {
@@ -38,8 +33,23 @@ public:
     return true;
   }
 
+  std::size_t size() const { return parent_.size(); }
+
 private:
   Indexed<Index> parent_;
+};
+
+/// The sets of a union, each named by its representative.
+struct Partition {
+  explicit Partition(UnionFind& sets) : of(sets.size()), sizes(sets.size(), 0) {
+    for (Index i = 0; i < of.count(); ++i) {
+      of[i] = sets.find(i);
+      ++sizes[of[i]];
+    }
+  }
+
+  Indexed<Index> of;           ///< the set of each element
+  Indexed<std::size_t> sizes;  ///< number of elements of each set; 0 elsewhere
 };
 
 /// The vertices of the pieces of a mesh; one in no triangle is a piece by itself.

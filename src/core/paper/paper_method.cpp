@@ -29,10 +29,11 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
   // Two points are joined if one of them is among the k nearest of the other.
   std::vector<Bridge> edges;
   for (const Index i : indicesOf(lists))
-    for (const Index j : nearestOthers(points, lists, i, static_cast<std::size_t>(k)))
-      edges.push_back({i, j, edgeLength(points, i, j)});
+    for (const NearPoint& near :
+         nearestOthers(points, i, listOf(lists, i), static_cast<std::size_t>(k)))
+      edges.push_back({i, near.point, edgeLength(points, i, near.point)});
   NeighborGraph result;
-  result.graph = graphOfEdges(lists.size(), edges);
+  result.graph = withEdges({}, edges, lists.size());
   UnionFind parts = connectedComponents(result.graph);
   result.bridges = shortestBridges(points, parts, 1);
   result.graph = withEdges(result.graph, result.bridges);

@@ -259,8 +259,7 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
     for (const Index b : graph.row(a))
       if (a < b && !std::binary_search(edges.begin(), edges.end(), Edge{a, b}))
         parts.unite(a, b);
-  const Indexed<Index> part = representatives(parts, graph.size());
-  const Indexed<std::size_t> sizes = setSizes(part);
+  const auto [part, sizes] = Partition(parts);
   std::map<Edge, PartBridge> joints;
   for (const auto& [from, to, length] : bridges) {
     PartBridge& joint = joints[edgeOf(part[from], part[to])];
@@ -304,7 +303,7 @@ Graph thinned(const Graph& graph, const std::vector<Bridge>& bridges) {
                       [](const Bridge& a, const Bridge& b) { return a.length < b.length; });
     edges.insert(edges.end(), row.begin(), end);
   }
-  return graphOfEdges(graph.size(), edges);
+  return withEdges({}, edges, graph.size());
 }
 
 /// The marks of all findings.

@@ -1,10 +1,10 @@
 #include "openings.h"
 
+#include "exact_predicates.h"
 #include "filled_graph.h"
 #include "graph_building.h"
 #include "graph_cycles.h"
 #include "pi.h"
-#include "point_set.h"
 #include "rotation_system.h"
 #include "rows.h"
 

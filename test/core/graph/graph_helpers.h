@@ -22,39 +22,29 @@ inline std::vector<Index> outliersOf(const Positions& points, OutlierMode mode,
 /// All pairs of neighbours, in both directions.
 inline Edges edgesOf(const Graph& graph) {
   Edges edges;
-  for (Index i = 0; i < static_cast<Index>(graph.size()); ++i)
-    for (const Index j : rowOf(graph, i))
+  for (const Index i : graph.nodes())
+    for (const Index j : graph.row(i))
       edges.insert({i, j});
   return edges;
 }
 
 /// Nodes that can be reached from another node, itself included, without node `removed`.
 inline Index countReachable(const Graph& graph, Index removed = -1) {
-  std::vector<bool> seen(graph.size(), false);
-  if (removed >= 0)
-    seen[static_cast<std::size_t>(removed)] = true;
-  std::vector<Index> stack{removed == 0 ? 1 : 0};
-  seen[static_cast<std::size_t>(stack[0])] = true;
-  Index count = 0;
-  while (!stack.empty()) {
-    const Index i = stack.back();
-    stack.pop_back();
-    ++count;
-    for (const Index j : rowOf(graph, i))
-      if (!seen[static_cast<std::size_t>(j)]) {
-        seen[static_cast<std::size_t>(j)] = true;
-        stack.push_back(j);
-      }
-  }
-  return count;
+  std::set<Index> seen{removed};
+  std::vector<Index> reached{removed == 0 ? 1 : 0};
+  seen.insert(reached[0]);
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    for (const Index j : graph.row(reached[k]))
+      if (seen.insert(j).second)
+        reached.push_back(j);
+  return static_cast<Index>(reached.size());
 }
 
 inline bool hasCutNode(const Graph& graph) {
   const auto n = static_cast<Index>(graph.size());
-  for (Index i = 0; i < n; ++i)
-    if (countReachable(graph, i) < n - 1)
-      return true;
-  return false;
+  const std::vector<Index> nodes = range(0, n);
+  return std::any_of(nodes.begin(), nodes.end(),
+                     [&](Index i) { return countReachable(graph, i) < n - 1; });
 }
 
 /// What every neighbour graph must be: connected, symmetric, in sorted rows, with distances.
@@ -64,17 +54,15 @@ inline void expectConnectedGraphOf(const Positions& points, const NeighborGraph&
   ASSERT_EQ(graph.lengths.size(), graph.neighbors.size());
   EXPECT_EQ(countReachable(graph), points.cols());
   const Edges edges = edgesOf(graph);
-  for (Index i = 0; i < points.cols(); ++i) {
-    const std::vector<Index> row = rowOf(graph, i);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      EXPECT_NE(row[k], i);
-      EXPECT_TRUE(k == 0 || row[k - 1] < row[k]);
-      EXPECT_EQ(edges.count({row[k], i}), 1U);
-      const double length = (points.col(i) - points.col(row[k])).stableNorm();
-      EXPECT_NEAR(graph.lengths[graph.offsets[static_cast<std::size_t>(i)] + k], length,
-                  1e-15 * length);
+  for (const Index i : graph.nodes())
+    for (const std::size_t e : graph.entries(i)) {
+      const Index j = graph.neighbors[e];
+      EXPECT_NE(j, i);
+      EXPECT_TRUE(e == graph.begin(i) || graph.neighbors[e - 1] < j);
+      EXPECT_EQ(edges.count({j, i}), 1U);
+      const double length = (points.col(i) - points.col(j)).stableNorm();
+      EXPECT_NEAR(graph.lengths[e], length, 1e-15 * length);
     }
-  }
 }
 
 /// Bridges are, one after the other, the closest pairs of two parts whose ends are not taken yet.
@@ -92,11 +80,20 @@ inline void expectClosestPairs(const Positions& points, const std::vector<Bridge
   }
 }
 
+/// Points of a grid of spacing 1, moved within their plane by up to `jitter`.
+inline Positions sheet(int rows, double height, double jitter, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-jitter, jitter);
+  return gridOf(rows, rows, [&](int row, int column) {
+    return Eigen::Vector3d{column + uniform(random), row + uniform(random), height};
+  });
+}
+
 /// The same lists out of order, with the point itself and a repetition.
 inline NeighborLists untidy(const NeighborLists& lists) {
   NeighborLists result;
   std::mt19937_64 random(7);
-  for (Index i = 0; i < static_cast<Index>(lists.size()); ++i) {
+  for (const Index i : indicesOf(lists)) {
     std::vector<Index> list = rowOf(lists, i);
     list.insert(list.end(), {i, list.front()});
     std::shuffle(list.begin(), list.end(), random);

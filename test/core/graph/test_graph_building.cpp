@@ -1,5 +1,6 @@
 #include "graph_building.h"
 
+#include "component_tree.h"
 #include "graph_helpers.h"
 
 namespace spherical_param::test {
@@ -62,6 +63,17 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
     ASSERT_EQ(bridges.size(), 3U);
     expectClosestPairs(points, bridges, is_inner, {1});
   }
+}
+
+TEST(GraphBuilding, OfEquallyLongPairsThatOfLowerIndicesIsFound) {
+  Positions line(3, 3);
+  line << 0, 1, -1,  //
+      0, 0, 0,       //
+      0, 0, 0;
+  ComponentTree::Pair pair{1.0, 1, 2};
+  ComponentTree(line).findNearest(0, {}, pair);
+  EXPECT_EQ(pair.from, 0);
+  EXPECT_EQ(pair.to, 1);
 }
 
 TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {

@@ -15,13 +15,13 @@ NeighborGraph build(const Positions& points, int k = 12) {
 /// Points with a tangent plane but without a certified cell.
 Index countUncertified(const Stars& stars) {
   return static_cast<Index>(
-      std::count_if(stars.kind.begin(), stars.kind.end(),
-                    [](const auto& kind) { return kind.tangent_plane && kind.wants_more; }));
+      std::count_if(stars.of_node.begin(), stars.of_node.end(),
+                    [](const auto& star) { return star.tangent_plane && star.wants_more; }));
 }
 
 Index countWithoutPlane(const Stars& stars) {
-  return static_cast<Index>(std::count_if(stars.kind.begin(), stars.kind.end(),
-                                          [](const auto& kind) { return !kind.tangent_plane; }));
+  return static_cast<Index>(std::count_if(stars.of_node.begin(), stars.of_node.end(),
+                                          [](const auto& star) { return !star.tangent_plane; }));
 }
 
 Stars starsOf(const Positions& points, int k = 12) {
@@ -199,15 +199,6 @@ TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
     ++compared;
   }
   EXPECT_GT(compared, 10);
-}
-
-/// Points of a grid of spacing 1, moved within their plane by up to `jitter`.
-Positions sheet(int rows, double height, double jitter, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(-jitter, jitter);
-  return gridOf(rows, rows, [&](int row, int column) {
-    return Eigen::Vector3d{column + uniform(random), row + uniform(random), height};
-  });
 }
 
 TEST(LocalDelaunayGraph, SquaresHaveNoDiagonalsAndCloseSheetsAreNotJoinedInside) {

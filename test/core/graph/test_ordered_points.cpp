@@ -21,8 +21,8 @@ void expectDistinctPointsAlongTheCurve(const Positions& points) {
       input_of_vertex.push_back(i);
     vertex_of_input.push_back(entry->second);
   }
-  EXPECT_EQ(ordered.distinct.vertex_of_input, vertex_of_input);
-  EXPECT_EQ(ordered.distinct.input_of_vertex, input_of_vertex);
+  EXPECT_EQ(ordered.vertex_of_input, vertex_of_input);
+  EXPECT_EQ(ordered.input_of_vertex, input_of_vertex);
   const Positions vertices = points(Eigen::all, input_of_vertex);
   EXPECT_EQ(ordered.vertex_of_node, mortonOrder(vertices));
   EXPECT_EQ(points(Eigen::all, ordered.input_of_node),

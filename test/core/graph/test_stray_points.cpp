@@ -4,10 +4,6 @@
 namespace spherical_param::test {
 namespace {
 
-Positions at(const Eigen::Vector3d& center, const Positions& points) {
-  return points.colwise() + center;
-}
-
 /// Points in a box, none of them nearer to the unit sphere than 0.06.
 Positions inBox(Index n, double half_size) {
   std::mt19937_64 random(3);
@@ -21,14 +17,6 @@ Positions inBox(Index n, double half_size) {
   return points;
 }
 
-/// A square of m x m points with distance 1, turned a little so that no four are on a circle.
-Positions sheet(int m, double height) {
-  Positions points(3, m * m);
-  for (int i = 0; i < m * m; ++i)
-    points.col(i) << i % m + 0.05 * std::sin(7.0 * i), i / m + 0.05 * std::cos(5.0 * i), height;
-  return points;
-}
-
 void expectStray(const Positions& surface, const Positions& stray) {
   const Positions points = horizontally(surface, stray);
   EXPECT_EQ(outliersOf(points, OutlierMode::Auto), range(surface.cols(), points.cols()));
@@ -36,14 +24,14 @@ void expectStray(const Positions& surface, const Positions& stray) {
 
 TEST(StrayPoints, AreClustersNetsAndPointsBetweenSheets) {
   for (const Positions& sphere : {spiralSphere(2000), randomSphere(2000, 1)})  // 0.08 apart
-    expectStray(sphere, horizontally(at({1.5, 0.0, 0.0}, 0.01 * spiralSphere(3)),
-                                     at({0.0, 0.0, 2.5}, 0.1 * spiralSphere(25))));
+    expectStray(sphere, horizontally(movedTo(1.5, 0.01 * spiralSphere(3)),
+                                     movedTo(-2.5, 0.1 * spiralSphere(25))));
   // A depth edge: the camera sees points that are on neither side.
   Positions between(3, 4);
   between << 5.0, 9.3, 14.1, 9.0,  //
       5.2, 9.1, 3.0, 16.0,         //
       10.0, 10.0, 6.0, 13.5;
-  expectStray(horizontally(sheet(20, 0.0), sheet(20, 20.0)), between);
+  expectStray(horizontally(sheet(20, 0.0, 0.05, 1), sheet(20, 20.0, 0.05, 2)), between);
   // A net of more than the neighbours of a point: their stars agree with each other.
   const Positions sphere = spiralSphere(20000);
   const Positions net = inBox(400, 1.5);
