@@ -26,7 +26,6 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -94,7 +93,7 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   internal::EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
   mesh.embedding = internal::paper::embed(mesh.graph.graph, points, options.paper,
                                           options.embedding.tolerance.value_or(typical_tolerance),
-                                          std::ref(recorder), clock.execution());
+                                          recorder, clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
   Triangles& triangles = mesh.optimization.triangles;

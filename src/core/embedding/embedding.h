@@ -9,9 +9,6 @@
 
 namespace spherical_param {
 
-/// \addtogroup embedding
-/// @{
-
 /// An embedding of a graph on the unit sphere.
 struct Embedding {
   Positions directions;      ///< 3 x n, unit vectors, column i = node i
@@ -63,21 +60,13 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
 
 /// Length of the tangential Laplacian of an embedding at each node [radius of the sphere].
 ///
-/// \param graph       as for embed().
-/// \param directions  3 x n, unit vectors.
-/// \param weights     of the Laplacian.
-/// \return n entries.
+/// \param directions 3 x n, unit vectors.
 std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
                                                EdgeWeights weights);
 
-/// The mean of tangentialLaplacianLengths().
-///
-/// \param graph, directions, weights as there.
-/// \return 0 without nodes.
+/// The mean of tangentialLaplacianLengths(); 0 without nodes.
 double meanTangentialLaplacian(const Graph& graph, const Positions& directions,
                                EdgeWeights weights);
-
-/// @}
 
 namespace internal {
 
@@ -88,6 +77,9 @@ namespace internal {
 /// \param points 3 x n, finite.
 /// \return 3 x n, unit vectors.
 Positions projectFromCentroid(const Positions& points);
+
+/// Whether an embedding with this centroid is at one place of the sphere. NaN counts as collapsed.
+bool isCollapsed(const Eigen::Vector3d& centroid);
 
 }  // namespace internal
 }  // namespace spherical_param

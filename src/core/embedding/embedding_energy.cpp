@@ -1,9 +1,6 @@
 #include "embedding_energy.h"
 
-#include "parallel.h"
 #include "tangential_laplacian.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +9,8 @@
 namespace spherical_param::internal {
 
 EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, int threads)
-    : graph_(graph), threads_(threadCount(threads, graph.size())) {}
+    : graph_(graph), threads_(threadCount(threads, graph.size())),
+      masses_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(graph.size()))) {}
 
 double EmbeddingEnergy::value(const Positions& u) const {
   const double sum = accumulate(graph_.size(), threads_, 0.0, [&](Index i, double& energy) {
@@ -24,13 +22,10 @@ double EmbeddingEnergy::value(const Positions& u) const {
       energy += edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], std::sqrt(squared)) * squared;
     }
   });
-  const double barrier =
-      masses_.size() > 0 ? -barrier_ * std::log1p(-(u * masses_).squaredNorm()) : 0.0;
-  return sum / 3.0 + barrier;
+  return sum / 3.0 - barrier_ * std::log1p(-(u * masses_).squaredNorm());
 }
 
 void EmbeddingEnergy::addBarrier(const Positions& u) {
-  masses_.resize(0);
   barrier_ = value(u);
   masses_ = meanSquares(graph_, [&](Index i, std::size_t e) {
     return (u.col(graph_.neighbors[e]) - u.col(i)).squaredNorm();
@@ -39,17 +34,11 @@ void EmbeddingEnergy::addBarrier(const Positions& u) {
 
 EmbeddingEnergy::Residual EmbeddingEnergy::gradient(const Positions& u, Positions& gradient) const {
   gradient.resize(3, u.cols());
-  const bool has_barrier = masses_.size() > 0;
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  if (has_barrier) {
-    const Eigen::Vector3d centroid = u * masses_;
-    pull = 2.0 * barrier_ / (1.0 - centroid.squaredNorm()) * centroid;
-  }
+  const Eigen::Vector3d centroid = u * masses_;
+  const Eigen::Vector3d pull = 2.0 * barrier_ / (1.0 - centroid.squaredNorm()) * centroid;
   Residual residual = accumulate(graph_.size(), threads_, Residual(), [&](Index i, Residual& sums) {
     const Eigen::Vector3d center = u.col(i);
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    if (has_barrier)
-      sum = masses_[i] * pull;
+    Eigen::Vector3d sum = masses_[i] * pull;
     double weights = 0.0;
     double lengths = 0.0;
     for (const std::size_t e : graph_.entries(i)) {
@@ -75,26 +64,18 @@ EmbeddingEnergy::Residual EmbeddingEnergy::gradient(const Positions& u, Position
 
 void EmbeddingEnergy::multiplyHessian(const Positions& u, const Positions& x,
                                       Positions& product) const {
-  const bool has_barrier = masses_.size() > 0;
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the pull along x
-  if (has_barrier) {
-    const Eigen::Vector3d centroid = u * masses_;
-    const Eigen::Vector3d moved = x * masses_;
-    const double gap = 1.0 - centroid.squaredNorm();
-    pull = 2.0 * barrier_ / gap * centroid;
-    change = 2.0 * barrier_ / gap * (moved + 2.0 / gap * centroid.dot(moved) * centroid);
-  }
+  const Eigen::Vector3d centroid = u * masses_;
+  const Eigen::Vector3d moved = x * masses_;
+  const double gap = 1.0 - centroid.squaredNorm();
+  const Eigen::Vector3d pull = 2.0 * barrier_ / gap * centroid;
+  const Eigen::Vector3d change =  // of the pull along x
+      2.0 * barrier_ / gap * (moved + 2.0 / gap * centroid.dot(moved) * centroid);
   product.resize(3, u.cols());
   forEachIndex(graph_.size(), threads_, {}, [&](Index i) {
     const Eigen::Vector3d center = u.col(i);
     const Eigen::Vector3d own = x.col(i);
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double curvature = 0.0;
-    if (has_barrier) {
-      sum = masses_[i] * change;
-      curvature = masses_[i] * pull.dot(center);
-    }
+    Eigen::Vector3d sum = masses_[i] * change;
+    double curvature = masses_[i] * pull.dot(center);
     for (const std::size_t e : graph_.entries(i)) {
       const Eigen::Vector3d edge = center - u.col(graph_.neighbors[e]);
       const Eigen::Vector3d difference = own - x.col(graph_.neighbors[e]);
@@ -109,8 +90,7 @@ void EmbeddingEnergy::multiplyHessian(const Positions& u, const Positions& x,
   });
 }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor, Index>
-EmbeddingEnergy::laplacian(const Positions& u) const {
+SparseRows EmbeddingEnergy::laplacian(const Positions& u) const {
   // Stretching an edge is twice as stiff as turning it.
   constexpr double stiffness = 1.5;
   std::vector<Eigen::Triplet<double, Index>> entries;
@@ -127,7 +107,7 @@ EmbeddingEnergy::laplacian(const Positions& u) const {
     // A node whose neighbours are all at its own place has no stiffness: it stays.
     entries.emplace_back(i, i, sum > 0.0 ? sum : 1.0);
   }
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> matrix(u.cols(), u.cols());
+  SparseRows matrix(u.cols(), u.cols());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }

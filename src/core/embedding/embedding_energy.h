@@ -1,22 +1,11 @@
 #pragma once
 
-#include "graph.h"
-#include "spherical_param/types.h"
-
-#include <Eigen/Core>
-#include <Eigen/SparseCore>
+#include "graph_hierarchy.h"
 
 namespace spherical_param::internal {
 
-/// The energy of an embedding u of a graph of points p,
-///
-///   E(u) = sum over edges  |u_i - u_j|^3 / (3 |p_i - p_j|)   +   barrier.
-///
-/// Its gradient in the tangent plane of u_i is minus the tangential Laplacian of Zwicker and
-/// Gotsman 2004 with their adaptive weights (equations 2 and 4), times the sum of the weights at i.
-///
-/// Where the energy alone does not keep it from collapsing, a barrier -b log(1 - |c|^2) in the
-/// centroid c = sum m_i u_i of masses does, \see embed.
+/// The energy of an embedding u of a graph, \see embed, plus a barrier -b log(1 - |c|^2) in the
+/// centroid c = sum m_i u_i of masses where it alone does not keep u from collapsing.
 class EmbeddingEnergy {
 public:
   /// \param graph    must outlive the energy.
@@ -53,13 +42,13 @@ public:
 
   /// The weights' Laplacian, n x n, with what the curvature of the sphere adds: on each coordinate
   /// of tangent vectors about the Hessian, without the barrier. Positive definite.
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> laplacian(const Positions& u) const;
+  SparseRows laplacian(const Positions& u) const;
 
 private:
   const Graph& graph_;
-  double barrier_ = 0.0;
-  Eigen::VectorXd masses_;  ///< n entries, sum 1; empty without barrier
   int threads_;
+  double barrier_ = 0.0;
+  Eigen::VectorXd masses_;  ///< n entries, sum 1; without a barrier 0
 };
 
 }  // namespace spherical_param::internal

@@ -1,6 +1,7 @@
 #include "embedding_history.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -26,7 +27,7 @@ EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const EmbeddingOptions& 
     history_.vertices.push_back(static_cast<Index>(evenly(i, count, nodes)));
 }
 
-void EmbeddingRecorder::operator()(const EmbeddingState& state) {
+void EmbeddingRecorder::record(HistoryFrame state, const std::function<Positions()>& directions) {
   std::vector<HistoryFrame>& frames = history_.frames;
   const bool is_end = state.step == EmbeddingStep::End;
   if (history_.vertices.empty() ||
@@ -35,24 +36,18 @@ void EmbeddingRecorder::operator()(const EmbeddingState& state) {
   // What came from a coarser level was carried here already.
   if (state.step == EmbeddingStep::Start && !frames.empty())
     return;
-  HistoryFrame frame;
-  frame.level = state.level;
-  frame.nodes = state.nodes;
-  frame.step = state.step;
-  frame.iteration = state.iteration;
-  frame.residual = state.residual;
-  frame.sphere = state.directions()(Eigen::all, history_.vertices);
+  state.sphere = directions()(Eigen::all, history_.vertices);
   // One state may be the end of one kind of step and the beginning of the next.
-  if (!frames.empty() && frames.back().level == frame.level &&
-      frames.back().sphere == frame.sphere) {
-    frame.residual = frame.residual ? frame.residual : frames.back().residual;
+  if (!frames.empty() && frames.back().level == state.level &&
+      frames.back().sphere == state.sphere) {
+    state.residual = state.residual ? state.residual : frames.back().residual;
     if (!is_end) {
-      frame.step = frames.back().step;
-      frame.iteration = frames.back().iteration;
+      state.step = frames.back().step;
+      state.iteration = frames.back().iteration;
     }
     frames.pop_back();
   }
-  frames.push_back(std::move(frame));
+  frames.push_back(std::move(state));
   // Which states are evenly spaced is known at the end only: until then more are kept.
   if (frames.size() > 3 * max_frames_)
     thinTo(2 * max_frames_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -63,19 +62,15 @@ std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& 
   return std::nullopt;
 }
 
-/// Stopping rules of conjugateGradients().
-struct LinearTolerance {
-  double reduction;  ///< of the residual, in the norm of the preconditioner
-  int refinements;   ///< V-cycles afterwards, each on the remaining residual
-};
-
 /// Solves Hessian x = -gradient by preconditioned conjugate gradients. Ends early at a direction of
 /// negative curvature (T. Steihaug, 1983). The result is always a descent direction.
 ///
-/// \param iterations is increased by those that are done.
+/// \param reduction   of the residual, in the norm of the preconditioner.
+/// \param refinements V-cycles afterwards, each on the remaining residual.
+/// \param iterations  is increased by those that are done.
 Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& iterate,
-                             const LaplacianCycle& preconditioner, const LinearTolerance& tolerance,
-                             int& iterations) {
+                             const LaplacianCycle& preconditioner, double reduction,
+                             int refinements, int& iterations) {
   const Positions& u = iterate.directions;
   const auto precondition = [&](const Positions& b) {
     Positions x = preconditioner.apply(b);
@@ -89,7 +84,7 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
   Positions direction = precondition(residual);
   Positions product;
   double square = dot(residual, direction);
-  const double goal = tolerance.reduction * tolerance.reduction * square;
+  const double goal = reduction * reduction * square;
   for (int i = 0; i < max_linear_iterations && square > goal; ++i) {
     energy.multiplyHessian(u, direction, product);
     const double curvature = dot(direction, product);
@@ -106,7 +101,7 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
     direction = preconditioned + next / square * direction;
     square = next;
   }
-  for (int i = 0; i < tolerance.refinements; ++i) {
+  for (int i = 0; i < refinements; ++i) {
     energy.multiplyHessian(u, x, product);
     x += precondition(-iterate.gradient - product);
   }
@@ -115,35 +110,37 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
 
 }  // namespace
 
-NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
-                              const NewtonOptions& options, Positions& directions) {
+std::vector<double> minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
+                                     const NewtonOptions& options, Positions& directions,
+                                     LevelReport& report) {
   // Conjugate gradients measure their progress by energy, to which small parts of the embedding add
   // nothing. Where the relative residual lags behind the absolute one by this factor, each step is
   // refined by four V-cycles, which treat all scales alike. With any lag, 10 of the 52
   // meshes intersect themselves; without refinement, self-intersections of two spheres grow by a
   // fifth.
   constexpr double max_lag = 4.0;
-  NewtonReport report;
+  constexpr int max_iterations = 100;
+  std::vector<double> residuals;
   Iterate current;
   current.residual = energy.gradient(directions, current.gradient);
   current.value = energy.value(directions);
   current.directions = directions;
   double reduction = 0.1;
   int refinements = 0;
-  for (;;) {
+  for (int iteration = 0;; ++iteration) {
     const EmbeddingEnergy::Residual& residual = current.residual;
-    report.residuals.push_back(residual.absolute);
+    residuals.push_back(residual.absolute);
     if (options.progress)
-      options.progress(report.iterations, residual.absolute);
-    const bool converged =
-        residual.absolute <= options.tolerance && residual.relative <= options.relative_tolerance;
+      options.progress(iteration, residual.absolute);
+    const bool converged = residual.absolute <= options.tolerance.value_or(1.0) &&
+                           residual.relative <= options.relative_tolerance;
     const bool collapses = options.collapses && options.collapses(current.directions);
-    if (converged || collapses || report.iterations >= options.max_iterations)
+    if (converged || collapses || iteration >= max_iterations)
       break;
 
     preconditioner.compute(energy.laplacian(current.directions));
-    const Positions step = conjugateGradients(energy, current, preconditioner,
-                                              {reduction, refinements}, report.linear_iterations);
+    const Positions step = conjugateGradients(energy, current, preconditioner, reduction,
+                                              refinements, report.linear_iterations);
     std::optional<Iterate> next = searchLine(energy, current, step, dot(current.gradient, step));
     if (!next)
       break;
@@ -156,9 +153,10 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& pre
       refinements = 4;
     current = std::move(*next);
     directions = current.directions;  // for the observer of the progress
-    ++report.iterations;
+    ++report.newton_iterations;
   }
-  return report;
+  report.residual = residuals.back();
+  return residuals;
 }
 
 }  // namespace spherical_param::internal

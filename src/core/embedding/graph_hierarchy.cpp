@@ -7,10 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -90,7 +88,7 @@ Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int thread
 
 /// Geodesic Voronoi cells of seeds.
 struct Aggregates {
-  Indexed<Index> of_node;     ///< n entries, positions in `seeds`
+  Indexed<Index> of_node;     ///< n entries, numbers of seeds
   Indexed<double> distances;  ///< n entries, length of the path to the own seed
 
   /// Gives a node the seed of a neighbour if the path through it is shorter; ties go to the lower
@@ -111,19 +109,13 @@ struct Aggregates {
 Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int threads,
                          const FractionReport& report) {
   const std::size_t n = graph.size();
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Aggregates near{Indexed<Index>(n, -1), Indexed<double>(n, infinity)};
-  // Ties go to the lower seed: the first one here.
+  Aggregates near{Indexed<Index>(n, -1),
+                  Indexed<double>(n, std::numeric_limits<double>::infinity())};
   for (const Index s : indicesOf(seeds)) {
     near.of_node[seeds[s]] = s;
     near.distances[seeds[s]] = 0.0;
-    for (const std::size_t e : graph.entries(seeds[s])) {
-      const Index j = graph.neighbors[e];
-      if (graph.lengths[e] < near.distances[j]) {
-        near.distances[j] = graph.lengths[e];
-        near.of_node[j] = s;
-      }
-    }
+    for (const std::size_t e : graph.entries(seeds[s]))
+      near.join(graph.neighbors[e], near, seeds[s], graph.lengths[e]);
   }
   reportFraction(report, 0.0);
   Aggregates cells = near;
@@ -193,10 +185,8 @@ void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double leng
     row.emplace(place, seed, length);
 }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& graph,
-                                                                  const Aggregates& cells,
-                                                                  std::size_t count, int threads,
-                                                                  const FractionReport& report) {
+SparseRows interpolation(const Graph& graph, const Aggregates& cells, std::size_t count,
+                         int threads, const FractionReport& report) {
   const std::size_t n = graph.size();
   const Graph weights = rowsOfBlocks(n, threads, report, [&](Index begin, Index end, Graph& rows) {
     std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
@@ -221,24 +211,13 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
       rows.endRow();
     }
   });
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> result(static_cast<Eigen::Index>(n),
-                                                             static_cast<Eigen::Index>(count));
+  SparseRows result(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(count));
   result.resizeNonZeros(static_cast<Eigen::Index>(weights.neighbors.size()));
   std::transform(weights.offsets.begin(), weights.offsets.end(), result.outerIndexPtr(),
                  [](std::size_t offset) { return static_cast<Index>(offset); });
   std::copy(weights.neighbors.begin(), weights.neighbors.end(), result.innerIndexPtr());
   std::copy(weights.lengths.begin(), weights.lengths.end(), result.valuePtr());
   return result;
-}
-
-void coarsen(const Graph& graph, std::uint32_t seed, int requested_threads,
-             const FractionReport& report, HierarchyLevel& level) {
-  const int threads = threadCount(requested_threads, graph.size());
-  level.seeds = independentSet(graph, seed, threads, report);
-  Aggregates cells = geodesicCells(graph, level.seeds, threads, report);
-  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads, report);
-  interpolation(graph, cells, level.seeds.size(), threads, report).swap(level.prolongation);
-  level.aggregate_of = std::move(cells.of_node);
 }
 
 }  // namespace
@@ -249,14 +228,16 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   const Graph* finest = &graph;
   const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
-    HierarchyLevel& level = hierarchy.levels.emplace_back();
-    coarsen(*finest, seed, execution.threads, report, level);
+    const int threads = threadCount(execution.threads, finest->size());
+    const Indexed<Index> seeds = independentSet(*finest, seed, threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere. Levels that keep more than half could be
     // as many as a hub has neighbours.
-    if (level.graph.size() < 4 || 2 * level.graph.size() > finest->size()) {
-      hierarchy.levels.pop_back();
+    if (seeds.size() < 4 || 2 * seeds.size() > finest->size())
       break;
-    }
+    const Aggregates cells = geodesicCells(*finest, seeds, threads, report);
+    HierarchyLevel& level = hierarchy.levels.emplace_back();
+    level.graph = coarseGraph(*finest, cells, seeds.size(), threads, report);
+    interpolation(*finest, cells, seeds.size(), threads, report).swap(level.prolongation);
     finest = &level.graph;
   }
   return hierarchy;

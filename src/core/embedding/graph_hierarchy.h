@@ -1,9 +1,7 @@
 #pragma once
 
 #include "graph.h"
-#include "indexed.h"
 #include "spherical_param/execution.h"
-#include "spherical_param/types.h"
 
 #include <Eigen/SparseCore>
 
@@ -12,18 +10,15 @@
 
 namespace spherical_param::internal {
 
-/// Maximum number of nodes of the coarsest level.
-inline constexpr Index kTypicalCoarsestSize = 500;
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
 
 /// A coarse graph and its relation to the next finer graph.
 struct HierarchyLevel {
-  Graph graph;                  ///< connected; lengths are those of shortest paths
-  Indexed<Index> seeds;         ///< for each node, its node of the finer graph
-  Indexed<Index> aggregate_of;  ///< for each node of the finer graph, its node of this graph
+  Graph graph;  ///< connected; lengths are those of shortest paths
   /// Nodes of the finer graph x nodes: interpolation of values from this level. The row of a seed
   /// has one entry; another row has the seeds of its own and its neighbours' aggregates, in inverse
   /// proportion to the lengths of the paths. Entries > 0, rows sum to 1.
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> prolongation;
+  SparseRows prolongation;
 };
 
 /// Coarser and coarser versions of a graph.
@@ -43,13 +38,11 @@ struct GraphHierarchy {
 /// \param coarsest_size levels are added until one has at most this number of nodes; >= 4.
 /// \param execution threads, progress
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; empty for a graph
-/// of
-///         at most `coarsest_size` nodes. The same for a seed on every platform and for any number
-///         of threads, and, up to ties and rounding, for a moved, turned, scaled or renumbered
-///         cloud.
+///         of at most `coarsest_size` nodes. The same for a seed on every platform and for any
+///         number of threads, and, up to ties and rounding, for a moved, turned, scaled or
+///         renumbered cloud.
 /// \throw Cancelled. Cost: O(n log n).
-GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed,
-                                   Index coarsest_size = kTypicalCoarsestSize,
+GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index coarsest_size,
                                    const Execution& execution = {});
 
 }  // namespace spherical_param::internal

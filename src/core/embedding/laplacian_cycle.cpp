@@ -8,12 +8,12 @@ LaplacianCycle::LaplacianCycle(const GraphHierarchy& hierarchy, std::size_t firs
   coarsest_.setShift(0.0, 1.0 + 1e-11);
 }
 
-void LaplacianCycle::compute(const Matrix& laplacian) {
+void LaplacianCycle::compute(const SparseRows& laplacian) {
   matrices_[0] = laplacian;
   for (std::size_t l = 0; l + 1 < matrices_.size(); ++l) {
-    const Matrix& prolongation = hierarchy_.levels[first_ + l].prolongation;
-    const Matrix product = matrices_[l] * prolongation;
-    matrices_[l + 1] = Matrix(prolongation.transpose()) * product;
+    const SparseRows& prolongation = hierarchy_.levels[first_ + l].prolongation;
+    const SparseRows product = matrices_[l] * prolongation;
+    matrices_[l + 1] = SparseRows(prolongation.transpose()) * product;
   }
   const Eigen::SparseMatrix<double> last = matrices_.back();
   if (!has_pattern_)
@@ -29,13 +29,13 @@ Positions LaplacianCycle::apply(const Positions& b) const {
 LaplacianCycle::Field LaplacianCycle::cycle(std::size_t l, const Field& b) const {
   if (l + 1 == matrices_.size())
     return coarsest_.solve(b);
-  const Matrix& matrix = matrices_[l];
-  const Matrix& prolongation = hierarchy_.levels[first_ + l].prolongation;
+  const SparseRows& matrix = matrices_[l];
+  const SparseRows& prolongation = hierarchy_.levels[first_ + l].prolongation;
   Field x = Field::Zero(b.rows(), 3);
   const auto solve_row = [&](Eigen::Index i) {
     Eigen::RowVector3d rest = b.row(i);
     double diagonal = 0.0;
-    for (Matrix::InnerIterator entry(matrix, i); entry; ++entry) {
+    for (SparseRows::InnerIterator entry(matrix, i); entry; ++entry) {
       if (entry.col() == i)
         diagonal = entry.value();
       else

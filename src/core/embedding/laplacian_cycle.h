@@ -1,10 +1,8 @@
 #pragma once
 
 #include "graph_hierarchy.h"
-#include "spherical_param/types.h"
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 
 #include <cstddef>
 #include <vector>
@@ -17,15 +15,13 @@ namespace spherical_param::internal {
 /// levels it is a direct solver.
 class LaplacianCycle {
 public:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
-
   /// \param hierarchy must outlive this.
   /// \param first     index of the next coarser level than the matrix.
   LaplacianCycle(const GraphHierarchy& hierarchy, std::size_t first);
 
   /// \param laplacian n x n, symmetric, positive definite up to rounding; later ones must have the
   ///                  pattern of the first.
-  void compute(const Matrix& laplacian);
+  void compute(const SparseRows& laplacian);
 
   /// An approximate solution x of laplacian x = b, each 3 x n.
   Positions apply(const Positions& b) const;
@@ -37,7 +33,7 @@ private:
 
   const GraphHierarchy& hierarchy_;
   std::size_t first_;
-  std::vector<Matrix> matrices_;  ///< of each level
+  std::vector<SparseRows> matrices_;  ///< of each level
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
   bool has_pattern_ = false;
 };

@@ -1,13 +1,12 @@
 #include "level_solver.h"
 
-#include "collapse.h"
-#include "parallel.h"
+#include "embedding.h"
 #include "tangential_laplacian.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace spherical_param::internal {
+
 EmbeddingLevels::EmbeddingLevels(const Graph& graph, const GraphHierarchy& hierarchy, int threads)
     : graph_(graph), hierarchy_(hierarchy), threads_(threads),
       masses_(1, meanSquares(graph, [&graph](Index, std::size_t e) {
@@ -32,12 +31,13 @@ double EmbeddingLevels::pull(std::size_t l, const Positions& u) const {
 
 double EmbeddingLevels::smooth(std::size_t l, int sweeps, const FractionReport& report,
                                Positions& u) const {
+  constexpr double damping = 0.5;
   const int threads = threadCount(threads_, graph(l).size());
   Positions moved(3, u.cols());
   double residual = 0.0;
   for (int i = 0; i < sweeps; ++i) {
     reportFraction(report, static_cast<double>(i) / sweeps);
-    residual = sweep(graph(l), EdgeWeights::Adaptive, kDamping, u, moved, threads);
+    residual = sweep(graph(l), EdgeWeights::Adaptive, damping, u, moved, threads);
     std::swap(u, moved);
   }
   return residual;
@@ -55,15 +55,12 @@ Positions EmbeddingLevels::interpolated(std::size_t l, const Positions& coarse) 
   return u;
 }
 
-std::vector<double> EmbeddingLevels::solve(std::size_t l, const Solution& solution, Positions& u,
+std::vector<double> EmbeddingLevels::solve(std::size_t l, const Positions* barrier_of,
+                                           NewtonOptions options, Positions& u,
                                            LevelReport& report) const {
   EmbeddingEnergy energy(graph(l), threads_);
-  NewtonOptions options;
-  options.relative_tolerance = solution.relative_tolerance;
-  options.tolerance = solution.tolerance.value_or(1.0);
-  options.progress = solution.progress;
-  if (solution.barrier_of != nullptr)
-    energy.addBarrier(*solution.barrier_of);
+  if (barrier_of != nullptr)
+    energy.addBarrier(*barrier_of);
   else
     options.collapses = [&](const Positions& directions) {
       return isCollapsed(centroid(l, directions));
@@ -74,11 +71,7 @@ std::vector<double> EmbeddingLevels::solve(std::size_t l, const Solution& soluti
   constexpr std::size_t max_direct_size = 10000;
   const bool is_direct = graph(l).size() <= max_direct_size;
   LaplacianCycle preconditioner(hierarchy_, is_direct ? coarsest() : l);
-  NewtonReport newton = minimizeByNewton(energy, preconditioner, options, u);
-  report.newton_iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  report.residual = newton.residuals.back();
-  return std::move(newton.residuals);
+  return minimizeByNewton(energy, preconditioner, options, u, report);
 }
 
 }  // namespace spherical_param::internal

@@ -1,14 +1,9 @@
 #pragma once
 
-#include "embedding_energy.h"
 #include "embedding_newton.h"
-#include "graph_hierarchy.h"
 #include "progress.h"
-#include "spherical_param/result.h"
 
 #include <cstddef>
-#include <functional>
-#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -37,20 +32,12 @@ public:
   /// Unit vectors on a level between those of the next coarser one.
   Positions interpolated(std::size_t l, const Positions& coarse) const;
 
-  /// When the solution of a level ends, and who sees it.
-  struct Solution {
-    double relative_tolerance;        ///< of the residual in units of each node's mean edge
-    std::optional<double> tolerance;  ///< of the mean tangential Laplacian [radius]
-    /// Sets the strength of a barrier that keeps the embedding from collapsing; nullptr: none.
-    const Positions* barrier_of = nullptr;
-    /// Called with (iteration, residual) before each step; throws to end the work.
-    std::function<void(int, double)> progress;
-  };
-  /// Lowers the energy of an embedding that is not collapsed by Newton's method.
+  /// Lowers the energy of an embedding that is not collapsed. \see minimizeByNewton
   ///
-  /// \return the residuals, before each step and at the end.
-  std::vector<double> solve(std::size_t l, const Solution& solution, Positions& u,
-                            LevelReport& report) const;
+  /// \param barrier_of sets the strength of a barrier that keeps the embedding from collapsing;
+  ///                   nullptr: none, the work ends if it collapses.
+  std::vector<double> solve(std::size_t l, const Positions* barrier_of, NewtonOptions options,
+                            Positions& u, LevelReport& report) const;
 
 private:
   const Graph& graph_;

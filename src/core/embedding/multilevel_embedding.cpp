@@ -1,7 +1,7 @@
 #include "multilevel_embedding.h"
 
-#include "collapse.h"
 #include "embedding_history.h"
+#include "level_solver.h"
 #include "planar_start.h"
 #include "progress.h"
 #include "tangential_laplacian.h"
@@ -41,6 +41,14 @@ constexpr double kFreedTolerance = 3e-5;
 /// shapes have 6,904,781 self-intersections after the first flips instead of 206,919. With 0, the
 /// springer takes 210 ms instead of 60, half of an armadillo 4.7 s instead of 0.25.
 constexpr double kMaxPull = 0.06;
+
+/// How an embedding is attempted.
+struct EmbeddingAttempt {
+  std::size_t level;         ///< on which it starts: 0 is the graph itself
+  EmbeddingBarrier barrier;  ///< where it has one
+  std::size_t starts;        ///< maximum number of starts
+  std::size_t compared;      ///< number of accepted starts of which the best is kept
+};
 
 /// One attempt at an embedding.
 class Ascent {
@@ -138,10 +146,8 @@ private:
     const Positions planar = u;
     levels_.smooth(attempt_.level, start_sweeps, {}, u);
     work.sweeps = start_sweeps;
-    levels_.solve(
-        attempt_.level,
-        {kStartTolerance, std::nullopt, hasBarrier(attempt_.level) ? &planar : nullptr, progress},
-        u, work);
+    levels_.solve(attempt_.level, hasBarrier(attempt_.level) ? &planar : nullptr,
+                  {kStartTolerance, std::nullopt, progress}, u, work);
   }
 
   /// Takes the embedding to the next finer level.
@@ -166,7 +172,7 @@ private:
       reportFraction(report_, 0.0);
       record(l, EmbeddingStep::Newton, iteration, residual, u);
     };
-    return levels_.solve(l, {relative_tolerance, tolerance, hasBarrier(l) ? &u : nullptr, progress},
+    return levels_.solve(l, hasBarrier(l) ? &u : nullptr, {relative_tolerance, tolerance, progress},
                          u, result_.report.levels[l]);
   }
 
@@ -185,7 +191,7 @@ private:
         finest = levels_.interpolated(k, finest);
       return finest;
     };
-    recorder_({l, levels_.graph(l).size(), step, iteration, residual, carried});
+    recorder_.record({l, levels_.graph(l).size(), step, iteration, residual, {}}, carried);
   }
 
   void finish(Positions& u) {
@@ -214,8 +220,14 @@ private:
   Embedding result_;
 };
 
-}  // namespace
-
+/// The attempts at an embedding, in the order in which they are made.
+///
+/// 1. The start on the coarsest level.
+/// 2. The same with a barrier on all levels but the graph itself, and with more starts. It helps
+///    graphs of a few nodes and with wide gaps, on which all starts collapse.
+/// 3. Starts on finer and finer levels: the fewer nodes are around a limb, the easier the sphere
+///    slips off it.
+/// 4. The barrier also on the graph itself, however hard it pulls.
 std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int starts) {
   // Largest level on which an attempt starts; the bound limits the time: a start takes up to
   // 200 us a node. None of 578 clouds needs more than 4,312; with 100,000, scans of 300,000 points
@@ -234,6 +246,8 @@ std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int star
   attempts.push_back({coarsest, EmbeddingBarrier::Everywhere, few, few});
   return attempts;
 }
+
+}  // namespace
 
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
                         const EmbeddingOptions& options, const Execution& execution) {

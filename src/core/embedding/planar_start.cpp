@@ -1,17 +1,14 @@
 #include "planar_start.h"
 
-#include "indexed.h"
 #include "pi.h"
 #include "shortest_paths.h"
 
-#include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -197,8 +194,7 @@ std::vector<Index> centralNodes(const Graph& graph) {
     }
     landmark = farthest(nearest);
   }
-  std::vector<Index> order(graph.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<Index> order = firstIndices(graph.size());
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     return std::pair(eccentricity[a], a) < std::pair(eccentricity[b], b);
   });

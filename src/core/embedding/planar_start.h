@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graph.h"
-#include "spherical_param/types.h"
 
 #include <vector>
 

@@ -1,20 +1,13 @@
 #pragma once
 
 #include "graph.h"
-#include "parallel.h"
 #include "spherical_param/options.h"
-#include "spherical_param/types.h"
-
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 
 namespace spherical_param::internal {
-
-/// Fraction of the tangential Laplacian by which a sweep moves each node.
-inline constexpr double kDamping = 0.5;
 
 /// Weight of an edge before the weights of a node are normalised (Zwicker and Gotsman 2004, section
 /// 3, the first two kinds, and equation 4).

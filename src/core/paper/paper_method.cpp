@@ -1,6 +1,5 @@
 #include "paper_method.h"
 
-#include "collapse.h"
 #include "graph_building.h"
 #include "neighbor_search.h"
 #include "progress.h"
@@ -41,7 +40,7 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
 }
 
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, const EmbeddingObserver& observer, const Execution& execution) {
+                double tolerance, EmbeddingRecorder& recorder, const Execution& execution) {
   const FractionReport progress = reportOf(execution, "embedding");
   const int threads = threadCount(execution.threads, graph.size());
   Embedding result;
@@ -54,9 +53,9 @@ Embedding embed(const Graph& graph, const Positions& points, const PaperOptions&
     report.residual = sweep(graph, options.weights, options.damping, u, moved, threads);
     report.residuals.push_back(report.residual);
     reportFraction(progress, report.iterations / (options.max_iterations + 1.0));
-    if (observer)
-      observer({0, graph.size(), EmbeddingStep::Iteration, report.iterations, report.residual,
-                [&] { return u; }});
+    recorder.record(
+        {0, graph.size(), EmbeddingStep::Iteration, report.iterations, report.residual, {}},
+        [&] { return u; });
     if (report.residual <= tolerance)
       report.stop_reason = StopReason::Converged;
     if (report.residual <= tolerance || report.iterations >= options.max_iterations)
@@ -69,9 +68,8 @@ Embedding embed(const Graph& graph, const Positions& points, const PaperOptions&
   // Judged at the end only: centring undoes a passing collapse within a few steps.
   if (isCollapsed(centroid))
     report.stop_reason = StopReason::Collapsed;
-  if (observer)
-    observer({0, graph.size(), EmbeddingStep::End, report.iterations, report.residual,
-              [&] { return u; }});
+  recorder.record({0, graph.size(), EmbeddingStep::End, report.iterations, report.residual, {}},
+                  [&] { return u; });
   return result;
 }
 

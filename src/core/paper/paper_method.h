@@ -27,11 +27,11 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
 /// \param graph     n >= 1 nodes, connected.
 /// \param points    3 x n, finite.
 /// \param tolerance mean length of the tangential Laplacian at convergence [radius].
-/// \param observer  receives all states; may be empty.
+/// \param recorder  receives all states.
 /// \return the embedding; StopReason::Collapsed if nearly all points are at one place.
 /// Cost: O(edges) for each iteration.
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, const EmbeddingObserver& observer, const Execution& execution);
+                double tolerance, EmbeddingRecorder& recorder, const Execution& execution);
 
 /// Section 3: the convex hull of the points on the sphere, by qhull. It leaves out points closer
 /// than its round-off; their exact Delaunay triangulation, which is the same hull, takes its place.

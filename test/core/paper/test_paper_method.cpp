@@ -87,8 +87,9 @@ Graph nearestGraph(const Positions& points, int k) {
 }
 
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, const EmbeddingObserver& observer = {}) {
-  return internal::paper::embed(graph, points, options, tolerance, observer, {});
+                double tolerance) {
+  EmbeddingRecorder none(graph.size(), {});
+  return internal::paper::embed(graph, points, options, tolerance, none, {});
 }
 
 /// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean
