@@ -1,8 +1,8 @@
 #include "surface_diagnosis.h"
 
 #include "corner_table.h"
+#include "cycle_labels.h"
 #include "graph_building.h"
-#include "graph_cycles.h"
 #include "indexed.h"
 #include "rows.h"
 #include "union_find.h"

@@ -4,6 +4,37 @@
 #include <utility>
 
 namespace spherical_param::internal {
+namespace {
+
+CycleLabels::Label lowestBitOf(CycleLabels::Label label) {
+  return label & (~label + 1);
+}
+
+/// None if a node has more than 64 neighbours on average. At a reach of 3 there are some 40 on a
+/// surface; memory and time grow with the number and its square.
+std::optional<NeighborRows> powerOf(const Graph& graph, int reach) {
+  NeighborRows power;
+  Indexed<Index> seen_from(graph.size(), -1);
+  std::vector<Index> disc;
+  for (const Index center : graph.nodes()) {
+    disc.assign(1, center);
+    seen_from[center] = center;
+    std::size_t begin = 0;
+    for (int step = 0; step < reach; ++step)
+      for (const std::size_t end = disc.size(); begin < end; ++begin)
+        for (const Index w : graph.row(disc[begin]))
+          if (std::exchange(seen_from[w], center) != center)
+            disc.push_back(w);
+    std::sort(disc.begin() + 1, disc.end());
+    power.neighbors.insert(power.neighbors.end(), disc.begin() + 1, disc.end());
+    power.endRow();
+    if (power.neighbors.size() > 64 * graph.size())
+      return std::nullopt;
+  }
+  return power;
+}
+
+}  // namespace
 
 NumberedGraph::NumberedGraph(NeighborRows rows) : NeighborRows(std::move(rows)) {
   edges.resize(neighbors.size());
@@ -46,7 +77,7 @@ CycleLabels::CycleLabels(const NumberedGraph& graph, const NeighborRows& cells)
       are_complete_ = false;
       continue;
     }
-    const Label bit = ~used_ & (used_ + 1);  // the lowest that is free
+    const Label bit = lowestBitOf(~used_);
     used_ |= bit;
     ++rank_;
     set(first_unknown, bit);
@@ -69,6 +100,7 @@ void CycleLabels::fill(Label label) {
 
 void CycleLabels::addCells(const NeighborRows& cells) {
   std::vector<Index> edges;
+  std::vector<Index> cell_of_entry;
   for (const Index cell : cells.nodes()) {
     edges.clear();
     Index from = cells.neighbors[cells.end(cell) - 1];
@@ -83,18 +115,11 @@ void CycleLabels::addCells(const NeighborRows& cells) {
     unknown_in_cell_.push_back(
         static_cast<Index>(edges_of_cell_.neighbors.size() - edges_of_cell_.offsets.back()));
     edges_of_cell_.endRow();
+    cell_of_entry.resize(edges_of_cell_.neighbors.size(), cell);
   }
-  // The cells of each edge.
-  Indexed<std::size_t> next(graph_.ends.size() + 1, 0);
-  for (const Index e : edges_of_cell_.neighbors)
-    ++next[e + 1];
-  for (std::size_t e = 0; e < graph_.ends.size(); ++e)
-    next[e + 1] += next[e];
-  cells_of_edge_.offsets.assign(next.begin(), next.end());
-  cells_of_edge_.neighbors.resize(edges_of_cell_.neighbors.size());
-  for (const Index cell : edges_of_cell_.nodes())
-    for (const Index e : edges_of_cell_.row(cell))
-      cells_of_edge_.neighbors[next[e]++] = cell;
+  cells_of_edge_ = nodesOfParts(edges_of_cell_.neighbors, graph_.ends.size());
+  for (Index& cell : cells_of_edge_.neighbors)
+    cell = cell_of_entry[static_cast<std::size_t>(cell)];
 }
 
 void CycleLabels::set(std::uint32_t edge, Label value) {
@@ -152,7 +177,7 @@ void CycleLabels::propagateInTriangles(std::uint32_t edge) {
 
 void CycleLabels::propagateInCells(std::uint32_t edge) {
   for (const Index cell : cells_of_edge_.row(static_cast<Index>(edge))) {
-    if (--unknown_in_cell_[static_cast<std::size_t>(cell)] > 1)
+    if (--unknown_in_cell_[cell] > 1)
       continue;
     Label sum = 0;
     std::uint32_t unknown = kNone;
@@ -182,41 +207,42 @@ void CycleLabels::mark(Index node) {
   marked_ = node;
 }
 
-/// A sum of bits is zero: one of them is not independent.
+/// A label by the bits that are independent.
+CycleLabels::Label CycleLabels::independentBitsOf(Label sum) const {
+  for (const Label relation : relations_)
+    if ((sum & lowestBitOf(relation)) != 0)
+      sum ^= relation;
+  return sum;
+}
+
+/// A sum of bits is zero: its lowest one is not independent.
 void CycleLabels::relate(Label sum) {
-  for (int bit = 0; sum != 0 && bit < kBits; ++bit) {
-    if ((sum >> bit & 1U) == 0)
-      continue;
-    Label& relation = relation_[static_cast<std::size_t>(bit)];
-    if (relation == 0) {
-      relation = sum;
-      --rank_;
-      return;
-    }
-    sum ^= relation;
-  }
+  if (sum != 0)
+    sum = independentBitsOf(sum);
+  if (sum == 0)
+    return;
+  relations_.push_back(sum);
+  --rank_;
 }
 
 /// Frees the bits that are not independent.
 void CycleLabels::applyRelations() {
-  // From the highest on: none has the lowest bit of another one then.
-  for (int bit = kBits - 1; bit >= 0; --bit)
-    for (int higher = bit + 1; higher < kBits; ++higher)
-      if ((relation_[static_cast<std::size_t>(bit)] >> higher & 1U) != 0)
-        relation_[static_cast<std::size_t>(bit)] ^= relation_[static_cast<std::size_t>(higher)];
-  Label freed = 0;
-  for (int bit = 0; bit < kBits; ++bit)
-    freed |= relation_[static_cast<std::size_t>(bit)] != 0 ? Label{1} << bit : 0;
-  if (freed == 0)
+  if (relations_.empty())
     return;
-  for (Label& value : value_) {
-    const Label freed_of_value = value & freed;
-    for (int bit = 0; bit < kBits && freed_of_value >> bit != 0; ++bit)
-      if ((freed_of_value >> bit & 1U) != 0)
-        value ^= relation_[static_cast<std::size_t>(bit)];
-  }
-  used_ &= ~freed;
-  relation_.fill(0);
+  for (Label& value : value_)
+    value = independentBitsOf(value);
+  for (const Label relation : relations_)
+    used_ &= ~lowestBitOf(relation);
+  relations_.clear();
+}
+
+std::optional<int> countCycles(const Graph& graph, int reach) {
+  std::optional<NeighborRows> power = powerOf(graph, reach);
+  if (!power)
+    return std::nullopt;
+  const NumberedGraph numbered(std::move(*power));
+  const CycleLabels labels(numbered, {});
+  return labels.areComplete() ? std::optional(labels.rank()) : std::nullopt;
 }
 
 }  // namespace spherical_param::internal

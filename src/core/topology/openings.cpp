@@ -1,27 +1,22 @@
 #include "openings.h"
 
+#include "cycle_labels.h"
 #include "exact_predicates.h"
 #include "filled_graph.h"
-#include "graph_building.h"
-#include "graph_cycles.h"
 #include "pi.h"
-#include "rotation_system.h"
 #include "rows.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
 
-namespace spherical_param {
-namespace internal {
-
+namespace spherical_param::internal {
 namespace {
 
 /// What a face needs to be an opening: edges, width [spacing] and mean corner [rad]; from the sure
@@ -53,55 +48,13 @@ double leastArea(const Positions& points, const std::vector<Index>& loop) {
   return least(0, n - 1);
 }
 
-}  // namespace
-
-Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop) {
-  Opening opening;
-  opening.loop = std::move(loop);
-  const auto m = static_cast<double>(opening.loop.size());
-  for (const Index v : opening.loop) {
-    opening.center += points.col(v) / m;
-    opening.spacing += spacing[v] / m;
-  }
-  Eigen::Vector3d area = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
-    const Eigen::Vector3d p = points.col(opening.loop[i]) - opening.center;
-    const Eigen::Vector3d q =
-        points.col(opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0]) - opening.center;
-    opening.boundary_length += (q - p).norm();
-    area += p.cross(q) / 2.0;
-    moments += p * p.transpose() / m;
-  }
-  opening.area = area.norm();
-  const double sure_area = kSureWidth * opening.spacing * opening.boundary_length / 4.0;
-  // The vector area of a loop that curls is small, the opening is not.
-  if (const double least = opening.area < sure_area ? leastArea(points, opening.loop) : 0.0;
-      least >= sure_area)
-    opening.area = least;
-  opening.width =
-      std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
-  // Loops nearer to a plane are flat [spacing].
-  constexpr double max_flat = 0.01;
-  opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < max_flat * opening.spacing;
-  opening.certainty = std::clamp(
-      (opening.width / opening.spacing - kMinWidth) / (kSureWidth - kMinWidth), 0.0, 1.0);
-  return opening;
-}
-
-namespace {
-
 /// The edges of a graph across openings, and from a loop to another sheet.
 std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const RotationSystem& rotation,
                                              const Openings& found) {
   Indexed<Index> loop_of(graph.size(), -1);
-  Index loop = 0;
-  for (const Opening& opening : found.openings) {
-    for (const Index v : opening.loop)
-      loop_of[v] = loop;
-    ++loop;
-  }
+  for (std::size_t i = 0; i < found.openings.size(); ++i)
+    for (const Index v : found.openings[i].loop)
+      loop_of[v] = static_cast<Index>(i);
   std::vector<std::array<Index, 2>> edges;
   for (const Index v : graph.nodes())
     for (const std::size_t e : graph.entries(v)) {
@@ -185,11 +138,9 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
     if (opening.width >= (roundness < min_roundness ? min_slit_width : kMinWidth) * opening.spacing)
       result.openings.push_back(std::move(opening));
   }
-  if (result.openings.empty() && areCoplanar(points)) {
-    std::optional<Opening> outside = outsideOf(points, spacing, rotation);
-    if (outside)
+  if (result.openings.empty() && areCoplanar(points))
+    if (std::optional<Opening> outside = outsideOf(points, spacing, rotation))
       result.openings.push_back(std::move(*outside));
-  }
   // Neighbours on one sheet with opposite normals, from which on a surface has one side only.
   constexpr std::size_t min_twisted = 10;
   result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= min_twisted;
@@ -204,19 +155,50 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   return result;
 }
 
-/// Whether the openings are all that there are: the graph has no cycles when they are filled, but
-/// for those of up to six points.
-bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings& found) {
-  return countCycles(fillOpenings(points, graph, found).graph, 2) == 0;
-}
-
 }  // namespace
+
+Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop) {
+  Opening opening;
+  opening.loop = std::move(loop);
+  const auto m = static_cast<double>(opening.loop.size());
+  for (const Index v : opening.loop) {
+    opening.center += points.col(v) / m;
+    opening.spacing += spacing[v] / m;
+  }
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    const Eigen::Vector3d p = points.col(opening.loop[i]) - opening.center;
+    const Eigen::Vector3d q =
+        points.col(opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0]) - opening.center;
+    opening.boundary_length += (q - p).norm();
+    area += p.cross(q) / 2.0;
+    moments += p * p.transpose() / m;
+  }
+  opening.area = area.norm();
+  const double sure_area = kSureWidth * opening.spacing * opening.boundary_length / 4.0;
+  // The vector area of a loop that curls is small, the opening is not.
+  if (const double least = opening.area < sure_area ? leastArea(points, opening.loop) : 0.0;
+      least >= sure_area)
+    opening.area = least;
+  opening.width =
+      std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
+  // Loops nearer to a plane are flat [spacing].
+  constexpr double max_flat = 0.01;
+  opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < max_flat * opening.spacing;
+  opening.certainty = std::clamp(
+      (opening.width / opening.spacing - kMinWidth) / (kSureWidth - kMinWidth), 0.0, 1.0);
+  return opening;
+}
 
 Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                       RotationSystem& rotation) {
   Openings found = openingsOf(points, graph, spacing, rotation);
-  if (found.openings.empty() || !rotation.hasOpposite(graph) ||
-      (found.is_one_sided && hasNoCyclesLeft(points, graph, found)))
+  if (found.openings.empty() || !rotation.hasOpposite(graph))
+    return found;
+  // The graph has no cycles when all openings are filled, but for those of up to six points.
+  if (found.is_one_sided && countCycles(fillOpenings(points, graph, found).graph, 2) == 0)
     return found;
   rotation.separateOpposite();
   return openingsOf(points, graph, spacing, rotation);
@@ -242,6 +224,4 @@ std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<O
   return found;
 }
 
-}  // namespace internal
-
-}  // namespace spherical_param
+}  // namespace spherical_param::internal
