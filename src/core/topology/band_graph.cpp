@@ -34,56 +34,7 @@ std::vector<Index> byDistance(const Graph& graph, const NodeSizes& sizes, Index 
   });
 }
 
-}  // namespace
-
-BandGraph::BandGraph(const Graph& graph, const NodeSizes& sizes, Index start,
-                     Indexed<Index>& band_of)
-    : graph_(graph), sizes_(sizes), band_of_(band_of) {
-  Indexed<double> distance(graph.size(), kFar);
-  std::vector<Index> nodes = byDistance(graph, sizes, start, distance);
-  const Index end = nodes.back();
-  for (const Index v : nodes)
-    distance[v] = kFar;
-  nodes = byDistance(graph, sizes, end, distance);
-  findBands(nodes, distance);
-  joinBands(nodes);
-}
-
-void BandGraph::findBands(const std::vector<Index>& nodes, const Indexed<double>& distance) {
-  const auto level = [&](Index v) { return static_cast<Index>(distance[v] / kBandWidth); };
-  for (const Index v : nodes) {
-    if (band_of_[v] >= 0)
-      continue;
-    Band band;
-    band.level = level(v);
-    band.nodes.push_back(v);
-    band_of_[v] = bands_.count();
-    double points = 0.0;
-    for (std::size_t i = 0; i < band.nodes.size(); ++i) {
-      points += sizes_.points[band.nodes[i]];
-      for (const Index w : graph_.row(band.nodes[i]))
-        if (band_of_[w] < 0 && level(w) == band.level) {
-          band_of_[w] = bands_.count();
-          band.nodes.push_back(w);
-        }
-    }
-    band.girth = kAreaOfPoint * points / kBandWidth;
-    bands_.push_back(std::move(band));
-  }
-}
-
-void BandGraph::joinBands(const std::vector<Index>& nodes) {
-  for (const Index v : nodes)
-    for (const Index w : graph_.row(v)) {
-      std::vector<Index>& joined = bands_[band_of_[v]].joined;
-      if (band_of_[w] != band_of_[v] && (joined.empty() || joined.back() != band_of_[w]))
-        joined.push_back(band_of_[w]);
-    }
-  for (Band& band : bands_)
-    sortUnique(band.joined);
-}
-
-double BandGraph::squeezeBetween(const Band& from, const Band& to) const {
+double squeezeBetween(const Band& from, const Band& to) {
   // The tip of a limb may be as narrow as it is sampled.
   if (to.joined.size() < 2)
     return 0.0;
@@ -94,34 +45,73 @@ double BandGraph::squeezeBetween(const Band& from, const Band& to) const {
                            std::log(to.girth / from.girth));
 }
 
-SqueezedWay BandGraph::worstWayFrom(Index root) const {
-  Indexed<double> squeeze(bands_.size(), kFar);
-  Indexed<Index> from(bands_.size(), -1);
+std::vector<WayStep> worstWayFrom(Index root, const Indexed<Band>& bands) {
+  Indexed<double> squeeze(bands.size(), kFar);
+  Indexed<Index> from(bands.size(), -1);
   const std::vector<Index> reached = shortestPaths(root, squeeze, [&](Index a, const auto& go) {
-    for (const Index b : bands_[a].joined)
-      if (go(b, squeezeBetween(bands_[a], bands_[b])))
+    for (const Index b : bands[a].joined)
+      if (go(b, squeezeBetween(bands[a], bands[b])))
         from[b] = a;
   });
   // The first of those that are squeezed most.
   const Index last = *std::find_if(reached.begin(), reached.end(),
                                    [&](Index a) { return squeeze[a] == squeeze[reached.back()]; });
-  SqueezedWay way;
-  for (Index band = last; band >= 0; band = from[band]) {
-    way.bands.push_back(band);
-    way.squeeze.push_back(squeeze[band]);
-  }
-  std::reverse(way.bands.begin(), way.bands.end());
-  std::reverse(way.squeeze.begin(), way.squeeze.end());
+  std::vector<WayStep> way;
+  for (Index band = last; band >= 0; band = from[band])
+    way.push_back({band, squeeze[band]});
+  std::reverse(way.begin(), way.end());
   return way;
 }
 
-SqueezedWay BandGraph::worstWay() const {
+}  // namespace
+
+Indexed<Band> bandsOf(const Graph& graph, const NodeSizes& sizes, Index start,
+                      Indexed<Index>& band_of) {
+  Indexed<double> distance(graph.size(), kFar);
+  std::vector<Index> nodes = byDistance(graph, sizes, start, distance);
+  const Index end = nodes.back();
+  for (const Index v : nodes)
+    distance[v] = kFar;
+  nodes = byDistance(graph, sizes, end, distance);
+  const auto level = [&](Index v) { return static_cast<Index>(distance[v] / kBandWidth); };
+  Indexed<Band> bands;
+  for (const Index v : nodes) {
+    if (band_of[v] >= 0)
+      continue;
+    Band band;
+    band.level = level(v);
+    band.nodes.push_back(v);
+    band_of[v] = bands.count();
+    double points = 0.0;
+    for (std::size_t i = 0; i < band.nodes.size(); ++i) {
+      points += sizes.points[band.nodes[i]];
+      for (const Index w : graph.row(band.nodes[i]))
+        if (band_of[w] < 0 && level(w) == band.level) {
+          band_of[w] = bands.count();
+          band.nodes.push_back(w);
+        }
+    }
+    band.girth = kAreaOfPoint * points / kBandWidth;
+    bands.push_back(std::move(band));
+  }
+  for (const Index v : nodes)
+    for (const Index w : graph.row(v)) {
+      std::vector<Index>& joined = bands[band_of[v]].joined;
+      if (band_of[w] != band_of[v] && (joined.empty() || joined.back() != band_of[w]))
+        joined.push_back(band_of[w]);
+    }
+  for (Band& band : bands)
+    sortUnique(band.joined);
+  return bands;
+}
+
+std::vector<WayStep> worstWay(const Indexed<Band>& bands) {
   // From a tip to the tip that is the farthest from it: the best root is between them.
-  const SqueezedWay across = worstWayFrom(worstWayFrom(0).bands.back());
-  SqueezedWay least = across;
-  for (const Index root : across.bands) {
-    SqueezedWay way = worstWayFrom(root);
-    if (way.squeeze.back() < least.squeeze.back())
+  const std::vector<WayStep> across = worstWayFrom(worstWayFrom(0, bands).back().band, bands);
+  std::vector<WayStep> least = across;
+  for (const WayStep& root : across) {
+    std::vector<WayStep> way = worstWayFrom(root.band, bands);
+    if (way.back().squeeze < least.back().squeeze)
       least = std::move(way);
   }
   return least;

@@ -63,8 +63,12 @@ public:
         if (fate == fates_.end()) {
           rest.neighbors.push_back(w);
           rest.lengths.push_back(graph_.lengths[e]);
-        } else if (v < w) {
-          addCopies(v, w, graph_.lengths[e], fate->second, edges);
+        } else if (v < w && !fate->second.is_dropped) {
+          const std::array<bool, 2>& is_right = fate->second.is_right;
+          edges.push_back(
+              {is_right[0] ? right_of_[v] : v, is_right[1] ? right_of_[w] : w, graph_.lengths[e]});
+          if (fate->second.is_doubled)
+            edges.push_back({right_of_[v], right_of_[w], graph_.lengths[e]});
         }
       }
       rest.endRow();
@@ -78,19 +82,6 @@ private:
   Fate& fateOf(Index v, Index w) {
     is_divided_[v] = is_divided_[w] = 1;
     return fates_[std::minmax(v, w)];
-  }
-
-  void addCopies(Index v, Index w, double length, const Fate& fate,
-                 std::vector<Bridge>& edges) const {
-    if (fate.is_dropped)
-      return;
-    if (fate.is_doubled) {
-      edges.push_back({v, w, length});
-      edges.push_back({right_of_[v], right_of_[w], length});
-    } else {
-      edges.push_back(
-          {fate.is_right[0] ? right_of_[v] : v, fate.is_right[1] ? right_of_[w] : w, length});
-    }
   }
 
   void mark(Index v, Side side) {
@@ -116,23 +107,20 @@ private:
   }
 
   Side sideOf(const CutLoop& loop, std::size_t i, Index w) const {
-    const std::size_t n = loop.nodes.size();
-    return rotation_.isLeft(loop.nodes[(i + n - 1) % n], loop.nodes[i], loop.nodes[(i + 1) % n], w)
-               ? Side::Left
-               : Side::Right;
+    const bool is_left = rotation_.isLeft(loop.before(i), loop.nodes[i], loop.after(i), w);
+    return is_left ? Side::Left : Side::Right;
   }
 
   /// Gives the edges of a node of a loop to its copies.
   void divideAt(const CutLoop& loop, std::size_t i) {
     const Index v = loop.nodes[i];
-    const std::size_t n = loop.nodes.size();
     for (const std::size_t e : graph_.entries(v)) {
       const Index w = graph_.neighbors[e];
       Fate& fate = fateOf(v, w);
       if (side_[w] != Side::On) {
         const Side side = side_[w] == Side::None ? sideOf(loop, i, w) : side_[w];
         fate.is_right[v < w ? 0 : 1] = side == Side::Right;
-      } else if (w == loop.nodes[(i + 1) % n] || w == loop.nodes[(i + n - 1) % n]) {
+      } else if (w == loop.after(i) || w == loop.before(i)) {
         fate.is_doubled = true;
       } else if (v < w) {
         fate.is_right[0] = fate.is_right[1] = sideOf(loop, i, w) == Side::Right;
@@ -163,9 +151,8 @@ CutGraph cutAlong(const Positions& points, const Graph& graph, const RotationSys
 
 FilledCut fillCut(const CutGraph& cut, const Openings& openings) {
   Openings all;
-  all.spacing.resize(cut.graph.size());
-  for (const Index v : cut.graph.nodes())
-    all.spacing[v] = openings.spacing[cut.node_of[v]];
+  for (const Index v : cut.node_of)
+    all.spacing.push_back(openings.spacing[v]);
   for (const std::vector<Index>& rim : cut.rims)
     all.openings.push_back(measured(cut.points, all.spacing, rim));
   all.openings.insert(all.openings.end(), openings.openings.begin(), openings.openings.end());

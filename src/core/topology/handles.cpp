@@ -7,7 +7,6 @@
 #include "parallel.h"
 #include "progress.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -157,15 +156,11 @@ private:
     std::vector<std::vector<Index>> walks(sources.size());
     forEachTask(sources.size(), threads_,
                 [&](std::size_t i) { walks[i] = shortestThrough(sources[i], radius); });
-    walks.erase(std::remove_if(walks.begin(), walks.end(), [](const auto& w) { return w.empty(); }),
-                walks.end());
     std::stable_sort(walks.begin(), walks.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
     bool has_found = false;
     for (std::size_t i = 0; i < walks.size() && left_ > 0; ++i) {
-      if (isBlocked(walks[i]))
-        continue;
-      const Label label = labels_.of(walks[i]);
+      const Label label = walks[i].empty() || isBlocked(walks[i]) ? 0 : labels_.of(walks[i]);
       if (label == 0)
         continue;
       has_found = true;
@@ -186,22 +181,19 @@ private:
   std::vector<Index> sourcesApart(Index distance) {
     std::vector<Index> sources;
     IndexSet near(graph_.size());
-    std::vector<Index> ring;
-    std::vector<Index> next;
+    std::vector<Index> disc;
     for (const Index v : graph_.nodes()) {
       if (blocked_[v] != 0 || near.contains(v) || !hasLabel(v))
         continue;
       sources.push_back(v);
       near.insert(v);
-      ring.assign(1, v);
-      for (Index step = 0; step < distance; ++step) {
-        next.clear();
-        for (const Index a : ring)
-          for (const Index b : graph_.row(a))
-            if (near.insert(b))
-              next.push_back(b);
-        ring.swap(next);
-      }
+      disc.assign(1, v);
+      std::size_t begin = 0;
+      for (Index step = 0; step < distance; ++step)
+        for (const std::size_t end = disc.size(); begin < end; ++begin)
+          for (const Index w : graph_.row(disc[begin]))
+            if (near.insert(w))
+              disc.push_back(w);
     }
     return sources;
   }
@@ -264,12 +256,8 @@ private:
       if (static_cast<double>(walks[i].size()) <= longest && !isBlocked(walks[i]) &&
           labels_.of(walks[i]) == label)
         loop = examined(walks[i]);
-    if (!loop && handles_ == Classes::All) {
-      left_ = kNotAll;
-      return;
-    }
     if (!loop) {
-      --left_;
+      left_ = handles_ == Classes::All ? kNotAll : left_ - 1;
       labels_.fill(label);
       return;
     }
@@ -295,25 +283,21 @@ private:
     CutLoop loop;
     loop.nodes = std::move(walk);
     const std::size_t may_leave_out = std::min(kMaxLeftOut, steps / kStepsOfLeftOut);
-    for (;;) {
-      const Dual dual = dualOf(loop);
-      loop.dual = dual.steps;
-      if (dual.steps >= (loop.left_out.empty() ? kMinDual : kMinDualOfSeparated))
-        break;
+    Dual dual = dualOf(loop);
+    while (dual.steps < (loop.left_out.empty() ? kMinDual : kMinDualOfSeparated)) {
       if (loop.left_out.size() == may_leave_out)
         return std::nullopt;
       loop.left_out.push_back(dual.joint);
+      dual = dualOf(loop);
     }
+    // Of a torus with this loop and its dual [squared steps].
+    const double area = static_cast<double>(steps) * dual.steps;
     // Without a dual the loop separates: it is around a gap.
-    if (loop.dual == kSeparates)
+    if (dual.steps == kSeparates || (handles_ == Classes::Some && area < kMinArea))
       return std::nullopt;
-    if (handles_ == Classes::All) {
-      loop.certainty = 1.0;
-      return loop;
-    }
-    if (loop.area() < kMinArea)
-      return std::nullopt;
-    loop.certainty = std::clamp((loop.area() - kMinArea) / (kSureArea - kMinArea), 0.0, 1.0);
+    loop.certainty = handles_ == Classes::All
+                         ? 1.0
+                         : std::clamp((area - kMinArea) / (kSureArea - kMinArea), 0.0, 1.0);
     return loop;
   }
 
@@ -341,46 +325,41 @@ private:
     Dual dual;
     for (const Index v : loop.nodes)
       side_[v] = Side::On;
-    const auto n = loop.nodes.size();
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < loop.nodes.size(); ++i) {
       const Index v = loop.nodes[i];
-      forEachBeside(loop.nodes[(i + n - 1) % n], v, loop.nodes[(i + 1) % n],
-                    [&](Index w, Side side) {
-                      if (side_[w] == Side::On || loop.leavesOut(v, w))
-                        return;
-                      if (side_[w] == Side::None) {
-                        side_[w] = side;
-                        touched.push_back(w);
-                        wave.from[w] = v;
-                      } else if (side_[w] != side) {
-                        dual = {0, longer(edgeOf(v, w), edgeOf(wave.from[w], w))};
-                      }
-                    });
+      const Row<Index> around = graph_.row(v);
+      const std::size_t after = rotation_.entryOf(v, loop.after(i)) - graph_.begin(v);
+      Side side = Side::Left;
+      for (std::size_t k = 1; k < around.size(); ++k) {
+        const Index w = around.begin()[(after + k) % around.size()];
+        if (w == loop.before(i))
+          side = Side::Right;
+        if (side_[w] == Side::On || loop.leavesOut(v, w))
+          continue;
+        if (side_[w] == Side::None) {
+          side_[w] = side;
+          touched.push_back(w);
+          wave.from[w] = v;
+        } else if (side_[w] != side) {
+          dual = {0, longer(edgeOf(v, w), edgeOf(wave.from[w], w))};
+        }
+      }
     }
     return dual;
   }
 
   /// The shortest walk from the left side of a loop to the right one.
   Dual shortestAcross(const CutLoop& loop, const std::vector<Index>& touched, Wave& wave) const {
-    wave.reached.clear();
-    wave.queue.clear();
+    wave.clear();
     for (const Index v : touched)
-      if (side_[v] == Side::Left) {
-        wave.reached.insert(v);
-        wave.steps[v] = 0;
-        wave.queue.push_back(v);
-      }
+      if (side_[v] == Side::Left)
+        wave.reach(v, v);
     for (std::size_t i = 0; i < wave.queue.size(); ++i) {
       const Index v = wave.queue[i];
       for (const std::size_t e : graph_.entries(v)) {
         Index w = graph_.neighbors[e];
         if (side_[w] == Side::On || labels_.isLeftOut(graph_.edges[e]) || loop.leavesOut(v, w) ||
-            !wave.reached.insert(w))
-          continue;
-        wave.steps[w] = wave.steps[v] + 1;
-        wave.from[w] = v;
-        wave.queue.push_back(w);
-        if (side_[w] != Side::Right)
+            !wave.reach(w, v) || side_[w] != Side::Right)
           continue;
         Dual dual{wave.steps[w], edgeOf(v, w)};
         for (; side_[w] != Side::Left; w = wave.from[w])
@@ -394,23 +373,6 @@ private:
   static Edge edgeOf(Index v, Index w) { return {std::min(v, w), std::max(v, w)}; }
   Edge longer(const Edge& a, const Edge& b) const {
     return rotation_.isLonger(b[0], b[1], a[0], a[1]) ? b : a;
-  }
-
-  /// Calls visit(neighbour, side) for the neighbours of a node but for those before and after.
-  template <typename Visit>
-  void forEachBeside(Index before, Index v, Index after, const Visit& visit) const {
-    const Row<Index> around = graph_.row(v);
-    const auto n = around.size();
-    const auto start =
-        static_cast<std::size_t>(std::find(around.begin(), around.end(), after) - around.begin());
-    Side side = Side::Left;
-    for (std::size_t k = 1; k < n; ++k) {
-      const Index w = around.begin()[(start + k) % n];
-      if (w == before)
-        side = Side::Right;
-      else
-        visit(w, side);
-    }
   }
 
   const RotationSystem& rotation_;

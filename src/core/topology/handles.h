@@ -14,15 +14,15 @@ namespace spherical_param::internal {
 
 /// A closed walk on a surface that does not bound, with two sides.
 struct CutLoop {
-  /// Of a torus with this loop and its dual [squared steps].
-  double area() const { return static_cast<double>(nodes.size()) * dual; }
+  /// The nodes before and after one of them.
+  Index before(std::size_t i) const { return nodes[(i + nodes.size() - 1) % nodes.size()]; }
+  Index after(std::size_t i) const { return nodes[(i + 1) % nodes.size()]; }
   bool leavesOut(Index v, Index w) const {
     return std::find(left_out.begin(), left_out.end(),
                      std::array{std::min(v, w), std::max(v, w)}) != left_out.end();
   }
 
   std::vector<Index> nodes;                    ///< in order, each once
-  int dual = 0;                                ///< steps of the shortest walk that crosses it once
   double certainty = 0.0;                      ///< in [0, 1]: of a handle; 1 needs no comparison
   std::vector<std::array<Index, 2>> left_out;  ///< edges that would join its sides beside it
 };

@@ -28,8 +28,8 @@ class LoopAroundBand {
 public:
   LoopAroundBand(const RotationSystem& rotation)
       : rotation_(rotation), graph_(rotation.edges()), taken_(graph_.size(), Taken::No),
-        ring_(graph_.size(), kOutside), side_(graph_.size(), 0), place_(graph_.size(), -1),
-        from_(graph_.size(), -1), is_label_(graph_.neighbors.size(), 0), wave_(graph_.size()) {}
+        ring_(graph_.size(), kOutside), side_(graph_.size(), 0), on_path_(graph_.size()),
+        is_label_(graph_.neighbors.size(), 0), wave_(graph_.size()) {}
 
   /// Keeps other loops at least two steps away from one.
   void keepFrom(const std::vector<Index>& loop) {
@@ -49,11 +49,8 @@ public:
   std::vector<Index> find(const std::vector<Index>& band, const IsAbove& is_above) {
     spread(band, is_above);
     const std::vector<Index> path = pathAcross();
-    std::vector<Index> best;
-    if (!path.empty()) {
-      label(path);
-      best = shortest(path);
-    }
+    label(path);
+    std::vector<Index> best = shortest(path);
     forget(path);
     return best;
   }
@@ -98,49 +95,40 @@ private:
 
   /// The shortest path from below to above; empty: none.
   std::vector<Index> pathAcross() {
-    std::vector<Index> queue;
-    for (const Index v : nodes_) {
-      from_[v] = -1;
-      if (ring_[v] == kPathRing && side_[v] == kBelow) {
-        from_[v] = v;
-        queue.push_back(v);
-      }
-    }
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      Index v = queue[i];
+    wave_.clear();
+    for (const Index v : nodes_)
+      if (ring_[v] == kPathRing && side_[v] == kBelow)
+        wave_.reach(v, v);
+    for (std::size_t i = 0; i < wave_.queue.size(); ++i) {
+      Index v = wave_.queue[i];
       if (ring_[v] == kPathRing && side_[v] == kAbove) {
         std::vector<Index> path{v};
-        while (from_[v] != v)
-          path.push_back(v = from_[v]);
+        while (wave_.from[v] != v)
+          path.push_back(v = wave_.from[v]);
         std::reverse(path.begin(), path.end());
         return path;
       }
       for (const Index w : graph_.row(v))
-        if (ring_[w] != kOutside && from_[w] < 0) {
-          from_[w] = v;
-          queue.push_back(w);
-        }
+        if (ring_[w] != kOutside)
+          wave_.reach(w, v);
     }
     return {};
   }
 
   /// Marks the edges from a path to its left.
   void label(const std::vector<Index>& path) {
-    for (std::size_t i = 0; i < path.size(); ++i)
-      place_[path[i]] = static_cast<Index>(i);
+    on_path_.clear();
+    for (const Index v : path)
+      on_path_.insert(v);
     for (std::size_t i = 1; i + 1 < path.size(); ++i)
       for (const std::size_t e : graph_.entries(path[i]))
-        if (place_[graph_.neighbors[e]] < 0 &&
+        if (!on_path_.contains(graph_.neighbors[e]) &&
             rotation_.isLeft(path[i - 1], path[i], path[i + 1], graph_.neighbors[e]))
           setLabels(path[i], e, 1);
   }
 
   void setLabels(Index v, std::size_t e, char value) {
-    is_label_[e] = value;
-    const Index w = graph_.neighbors[e];
-    for (const std::size_t back : graph_.entries(w))
-      if (graph_.neighbors[back] == v)
-        is_label_[back] = value;
+    is_label_[e] = is_label_[rotation_.entryOf(graph_.neighbors[e], v)] = value;
   }
 
   std::vector<Index> shortest(const std::vector<Index>& path) {
@@ -165,12 +153,10 @@ private:
       ring_[v] = kOutside;
       side_[v] = 0;
     }
-    for (const Index v : path) {
-      place_[v] = -1;
+    for (const Index v : path)
       for (const std::size_t e : graph_.entries(v))
         if (is_label_[e] != 0)
           setLabels(v, e, 0);
-    }
   }
 
   const RotationSystem& rotation_;
@@ -179,8 +165,7 @@ private:
   std::vector<Index> nodes_;  ///< around a band
   Indexed<int> ring_;         ///< of those
   Indexed<char> side_;
-  Indexed<Index> place_;        ///< in a path; -1
-  Indexed<Index> from_;         ///< the node before in a path
+  IndexSet on_path_;
   std::vector<char> is_label_;  ///< of entries
   Wave wave_;
 };
@@ -244,16 +229,14 @@ private:
     for (const Index v : graph_.nodes()) {
       if (sets.find(v) != v || tries_[v] >= kMaxRetries)
         continue;
-      const BandGraph bands(graph, sizes, v, band_of);
+      const Indexed<Band> bands = bandsOf(graph, sizes, v, band_of);
       std::vector<Index> loop = neckOf(bands, band_of);
       if (loop.empty()) {
         tries_[v] = kMaxRetries;
         continue;
       }
       around_.keepFrom(loop);
-      loops_.emplace_back();
-      loops_.back().nodes = std::move(loop);
-      loops_.back().certainty = 1.0;
+      loops_.push_back({std::move(loop), 1.0, {}});
       has_cut = true;
     }
     return has_cut;
@@ -275,30 +258,29 @@ private:
   }
 
   /// The loop along which a sphere is cut; empty: none.
-  std::vector<Index> neckOf(const BandGraph& bands, const Indexed<Index>& band_of) {
-    const SqueezedWay way = bands.worstWay();
-    const double worst = way.squeeze.back();
+  std::vector<Index> neckOf(const Indexed<Band>& bands, const Indexed<Index>& band_of) {
+    const std::vector<WayStep> way = worstWay(bands);
+    const double worst = way.back().squeeze;
     squeeze_ = std::max(squeeze_, worst);
     if (worst <= kMaxSqueeze)
       return {};
     // About half way, the narrowest first; or those around a step across that.
     constexpr double around_half = 1.0 / 6.0;
     std::vector<Index> candidates;
-    for (std::size_t i = 0; i < way.bands.size(); ++i)
-      if (std::abs(way.squeeze[i] / worst - 0.5) <= around_half)
-        candidates.push_back(way.bands[i]);
-    for (std::size_t i = 1; candidates.empty() && i < way.bands.size(); ++i)
-      if (way.squeeze[i] > worst / 2.0)
-        candidates = {way.bands[i - 1], way.bands[i]};
-    std::stable_sort(candidates.begin(), candidates.end(), [&](Index a, Index b) {
-      return bands.bands()[a].girth < bands.bands()[b].girth;
-    });
+    for (const auto& [band, squeeze] : way)
+      if (std::abs(squeeze / worst - 0.5) <= around_half)
+        candidates.push_back(band);
+    for (std::size_t i = 1; candidates.empty() && i < way.size(); ++i)
+      if (way[i].squeeze > worst / 2.0)
+        candidates = {way[i - 1].band, way[i].band};
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](Index a, Index b) { return bands[a].girth < bands[b].girth; });
     for (const Index candidate : candidates) {
-      const Band& band = bands.bands()[candidate];
+      const Band& band = bands[candidate];
       std::vector<Index> loop = around_.find(band.nodes, [&](Index v) {
         // Beside another cut a node may be of another sphere.
-        return band_of[v] >= 0 && band_of[v] < bands.bands().count() &&
-               bands.bands()[band_of[v]].level > band.level;
+        return band_of[v] >= 0 && band_of[v] < bands.count() &&
+               bands[band_of[v]].level > band.level;
       });
       if (!loop.empty())
         return loop;

@@ -20,7 +20,7 @@ struct Necks {
 /// Finds the necks of a surface: loops around tubes that are so long that a sphere would squeeze
 /// them to nothing. Cut along its handles and necks, the surface is several spheres.
 ///
-/// While a sphere is squeezed too much (\see BandGraph), it is cut about half way to its narrowest
+/// While a sphere is squeezed too much (\see worstWay), it is cut about half way to its narrowest
 /// place: the loop is the shortest around a band, of at least 6 nodes, that divides the sphere.
 ///
 /// \param points   3 x n.

@@ -20,6 +20,21 @@ namespace {
 constexpr double kMaxSheetSlope = 0.6;
 constexpr double kMinSheetCosine = 0.5;
 
+/// An angle counter-clockwise, a full turn if it is 0.
+double counterClockwise(double angle) {
+  return angle > 0.0 ? angle : angle + 2.0 * kPi;
+}
+
+/// Number of edges that meet a condition.
+template <typename Condition>
+std::size_t countEdges(const NeighborRows& edges, const Condition& meets) {
+  std::size_t count = 0;
+  for (const Index v : edges.nodes())
+    for (const Index w : edges.row(v))
+      count += w > v && meets(v, w) ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 Indexed<double> nodeSpacings(const Graph& graph, int threads) {
@@ -45,14 +60,20 @@ RotationSystem::RotationSystem(const Positions& points, const Graph& graph,
   sortAround();
 }
 
+std::size_t RotationSystem::entryOf(Index v, Index w) const {
+  std::size_t e = edges_.begin(v);
+  while (edges_.neighbors[e] != w)
+    ++e;
+  return e;
+}
+
 bool RotationSystem::isLeft(Index before, Index at, Index after, Index node) const {
   const Eigen::Vector3d normal = normals_.col(at);
   const Eigen::Vector3d x = direction(at, after);
   const Eigen::Vector3d y = normal.cross(x);
   const auto angle = [&](Index to) {
     const Eigen::Vector3d d = direction(at, to);
-    const double a = std::atan2(y.dot(d), x.dot(d));
-    return a > 0.0 ? a : a + 2.0 * kPi;
+    return counterClockwise(std::atan2(y.dot(d), x.dot(d)));
   };
   return angle(node) < angle(before);
 }
@@ -95,11 +116,11 @@ NeighborRows RotationSystem::faces(std::size_t min_steps, double min_corner) con
         nodes.push_back(from);
         const std::size_t back = entryOf(to, from);
         edge = (back > edges_.begin(to) ? back : edges_.end(to)) - 1;
-        corners += cornerBetween(edge, back);
+        corners += counterClockwise(angles_[back] - angles_[edge]);
         from = to;
       }
       const std::size_t steps = nodes.size() - begin;
-      if (steps > 0 && steps >= min_steps && corners >= min_corner * static_cast<double>(steps))
+      if (steps >= min_steps && corners >= min_corner * static_cast<double>(steps))
         found.endRow();
       else
         nodes.resize(begin);
@@ -120,16 +141,6 @@ void RotationSystem::keepEdges(const Condition& meets) {
   });
 }
 
-/// Number of edges that meet a condition.
-template <typename Condition>
-std::size_t RotationSystem::countEdges(const NeighborRows& edges, const Condition& meets) {
-  std::size_t count = 0;
-  for (const Index v : edges.nodes())
-    for (const Index w : edges.row(v))
-      count += w > v && meets(v, w) ? 1 : 0;
-  return count;
-}
-
 bool RotationSystem::areOpposite(Index v, Index w) const {
   return cosine(v, w) < -kMinSheetCosine;
 }
@@ -141,8 +152,7 @@ double RotationSystem::slope(Index v, Index w) const {
 }
 
 /// For each edge, at its lower node, 1 if it crosses a shorter one: the diagonals of four points
-/// that are all neighbours. Of two as long as each other, the one of the higher node counts as
-/// longer.
+/// that are all neighbours.
 std::vector<char> RotationSystem::longerOfCrossing() const {
   std::vector<char> crosses(edges_.neighbors.size(), 0);
   forEachIndex<std::vector<Index>>(
@@ -230,12 +240,11 @@ void RotationSystem::orientNormals() {
   UnionFind sides(2 * edges_.size());
   for (const auto& bucket : edges)
     for (const auto& [v, w] : bucket) {
-      const bool turns = cosine(v, w) < 0.0;
-      const Index on_side_of_v = turns ? w + n : w;
-      if (sides.find(v) == sides.find(turns ? w : w + n))
+      const auto [same, other] = cosine(v, w) < 0.0 ? std::pair(w + n, w) : std::pair(w, w + n);
+      if (sides.find(v) == sides.find(other))
         continue;
-      sides.unite(v, on_side_of_v);
-      sides.unite(v + n, turns ? w : w + n);
+      sides.unite(v, same);
+      sides.unite(v + n, other);
     }
   for (const Index v : edges_.nodes())
     if (sides.find(v) > sides.find(v + n))
@@ -262,19 +271,6 @@ void RotationSystem::sortAround() {
       edges_.neighbors[e++] = w;
     }
   });
-}
-
-std::size_t RotationSystem::entryOf(Index v, Index w) const {
-  std::size_t e = edges_.begin(v);
-  while (edges_.neighbors[e] != w)
-    ++e;
-  return e;
-}
-
-/// The angle counter-clockwise from one edge of a node to another, a full turn if they are one.
-double RotationSystem::cornerBetween(std::size_t from, std::size_t to) const {
-  const double angle = angles_[to] - angles_[from];
-  return angle > 0.0 ? angle : angle + 2.0 * kPi;
 }
 
 }  // namespace spherical_param::internal

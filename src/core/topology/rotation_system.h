@@ -33,6 +33,8 @@ public:
 
   /// The neighbours of each node, counter-clockwise.
   const NeighborRows& edges() const { return edges_; }
+  /// Where v names w.
+  std::size_t entryOf(Index v, Index w) const;
 
   /// Whether a node is on the left of a way through another one, seen from where its normal points.
   bool isLeft(Index before, Index at, Index after, Index node) const;
@@ -59,8 +61,6 @@ public:
 private:
   template <typename Condition>
   void keepEdges(const Condition& meets);
-  template <typename Condition>
-  static std::size_t countEdges(const NeighborRows& edges, const Condition& meets);
   bool areOpposite(Index v, Index w) const;
   double slope(Index v, Index w) const;
   bool areJoined(Index v, Index w) const { return edges_.row(v).contains(w); }
@@ -70,9 +70,6 @@ private:
   void findNormals();
   void orientNormals();
   void sortAround();
-  /// Where v names w.
-  std::size_t entryOf(Index v, Index w) const;
-  double cornerBetween(std::size_t from, std::size_t to) const;
 
   const Positions& points_;
   int threads_;

@@ -12,12 +12,12 @@ double squeezeOf(const Positions& points) {
   const Graph graph = localDelaunayGraph(points).graph;
   const NodeSizes sizes{nodeSpacings(graph, 1), Indexed<double>(graph.size(), 1.0)};
   Indexed<Index> band_of(graph.size(), -1);
-  const BandGraph bands(graph, sizes, 0, band_of);
+  const Indexed<Band> bands = bandsOf(graph, sizes, 0, band_of);
   for (const Index v : graph.nodes()) {
-    const std::vector<Index>& nodes = bands.bands()[band_of[v]].nodes;
+    const std::vector<Index>& nodes = bands[band_of[v]].nodes;
     EXPECT_EQ(std::count(nodes.begin(), nodes.end(), v), 1);
   }
-  return bands.worstWay().squeeze.back();
+  return worstWay(bands).back().squeeze;
 }
 
 TEST(BandGraph, SeesHowMuchATubeIsSqueezed) {
