@@ -5,11 +5,11 @@
 #include "progress.h"
 #include "rotation_system.h"
 #include "sphere_mesh.h"
+#include "spherical_param/mesh_topology.h"
 #include "union_find.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <limits>
 #include <queue>
 #include <tuple>
@@ -24,25 +24,19 @@ using TriangleList = std::vector<std::array<Index, 3>>;
 
 Triangles matrixOf(const TriangleList& list) {
   Triangles triangles(3, static_cast<Eigen::Index>(list.size()));
-  for (std::size_t t = 0; t < list.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      triangles(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(t)) = list[t][k];
+  Eigen::Index column = 0;
+  for (const auto& [a, b, c] : list)
+    triangles.col(column++) << a, b, c;
   return triangles;
 }
 
-/// Edges of a mesh.
-class EdgeSet {
-public:
-  bool insert(Index v, Index w) { return edges_.insert(keyOf(v, w)).second; }
-  void erase(Index v, Index w) { edges_.erase(keyOf(v, w)); }
+/// The keys of the edges of a mesh.
+using EdgeSet = std::unordered_set<std::uint64_t>;
 
-private:
-  static std::uint64_t keyOf(Index v, Index w) {
-    const auto [low, high] = std::minmax(v, w);
-    return static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high);
-  }
-  std::unordered_set<std::uint64_t> edges_;
-};
+std::uint64_t keyOf(Index v, Index w) {
+  const auto [low, high] = std::minmax(v, w);
+  return static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high);
+}
 
 /// Cuts a polygon into triangles, ear by ear, the shortest new edge first, none of which is there
 /// already.
@@ -75,7 +69,7 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
     if (is_cut[tip] != 0 || previous[tip] != before || next[tip] != after)
       continue;
     const bool is_last = found.size() + 3 == count;
-    if (!is_last && !edges.insert(loop[before], loop[after]))
+    if (!is_last && !edges.insert(keyOf(loop[before], loop[after])).second)
       continue;
     found.push_back({loop[before], loop[tip], loop[after]});
     is_cut[tip] = 1;
@@ -86,7 +80,7 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
   }
   if (found.size() + 2 < count) {
     for (const auto& [before, tip, after] : found)
-      edges.erase(before, after);
+      edges.erase(keyOf(before, after));
     return false;
   }
   triangles.insert(triangles.end(), found.begin(), found.end());
@@ -103,7 +97,7 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
   for (const Index v : graph.nodes())
     for (const Index w : graph.row(v))
       if (v < w)
-        edges.insert(v, w);
+        edges.insert(keyOf(v, w));
   const NeighborRows faces = rotation.faces(3, 0.0);
   for (const Index i : faces.nodes()) {
     const std::vector<Index> face(faces.row(i).begin(), faces.row(i).end());
@@ -115,29 +109,21 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
   return triangles;
 }
 
-/// The triangles around a vertex that follow each other, in fans.
-std::vector<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
-                                       Index v) {
-  using Wedge = std::array<Index, 3>;  // first neighbour, last one, triangle
-  std::vector<Wedge> left;
+/// The triangles around a vertex that follow each other, in fans; some of the lists are empty.
+Indexed<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
+                                   Index v) {
+  Indexed<std::array<Index, 3>> wedges;  // first neighbour, last one, triangle
   corners.forEachCorner(v, [&](Index t, Index k) {
-    left.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
+    wedges.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
   });
-  std::vector<std::vector<Index>> fans;
-  while (!left.empty()) {
-    std::vector<Wedge> fan{left.front()};
-    left.erase(left.begin());
-    fans.emplace_back();
-    for (std::size_t i = 0; i < fan.size(); ++i) {
-      const Wedge at = fan[i];
-      fans.back().push_back(at[2]);
-      const auto next = std::stable_partition(left.begin(), left.end(), [&](const Wedge& other) {
-        return other[0] != at[1] && other[1] != at[0];
-      });
-      fan.insert(fan.end(), next, left.end());
-      left.erase(next, left.end());
-    }
-  }
+  UnionFind sets(wedges.size());
+  for (const Index i : indicesOf(wedges))
+    for (const Index j : indicesOf(wedges))
+      if (wedges[i][1] == wedges[j][0])
+        sets.unite(i, j);
+  Indexed<std::vector<Index>> fans(wedges.size());
+  for (const Index i : indicesOf(wedges))
+    fans[sets.find(i)].push_back(wedges[i][2]);
   return fans;
 }
 
@@ -156,17 +142,15 @@ Triangles withoutPinches(Triangles triangles, std::size_t vertices) {
   for (;;) {
     const CornerTable corners(triangles, vertices, 1);
     Indexed<char> drops(columnCount(triangles), 0);
-    bool has_pinch = false;
     for (Index v = 0; v < static_cast<Index>(vertices); ++v)
       if (corners.countAt(v) > 0)
         for (const std::vector<Index>& fan : withoutLargest(fansAt(triangles, corners, v)))
-          for (const Index t : fan) {
+          for (const Index t : fan)
             drops[t] = 1;
-            has_pinch = true;
-          }
-    if (!has_pinch)
-      return triangles;
-    triangles = filtered(triangles, [&](Eigen::Index t) { return drops[t] == 0; });
+    Triangles rest = filtered(triangles, [&](Eigen::Index t) { return drops[t] == 0; });
+    if (rest.cols() == triangles.cols())
+      return rest;
+    triangles = std::move(rest);
   }
 }
 
@@ -177,7 +161,7 @@ Triangles closed(const Positions& points, const Triangles& open) {
   EdgeSet edges;
   for (const auto& t : open.colwise())
     for (Eigen::Index k = 0; k < 3; ++k)
-      edges.insert(t[k], t[(k + 1) % 3]);
+      edges.insert(keyOf(t[k], t[(k + 1) % 3]));
   TriangleList fillings;
   Indexed<char> is_left_out(vertices, 0);
   for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
@@ -185,16 +169,9 @@ Triangles closed(const Positions& points, const Triangles& open) {
     if (!cutIntoTriangles(points, loop, edges, fillings))
       is_left_out[pieces.find(loop.front())] = 1;
   }
-  TriangleList triangles;
-  const auto add = [&](const auto& t) {
-    if (is_left_out[pieces.find(t[0])] == 0)
-      triangles.push_back({t[0], t[1], t[2]});
-  };
-  for (const auto& t : open.colwise())
-    add(t);
-  for (const auto& t : fillings)
-    add(t);
-  return matrixOf(triangles);
+  Triangles all(3, open.cols() + static_cast<Eigen::Index>(fillings.size()));
+  all << open, matrixOf(fillings);
+  return filtered(all, [&](Eigen::Index t) { return is_left_out[pieces.find(all(0, t))] == 0; });
 }
 
 /// A tube between two triangles.
@@ -245,9 +222,7 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
   std::sort(edges.begin(), edges.end());
   Indexed<char> is_taken(columnCount(spheres), 0);
   TriangleList triangles;
-  for (const auto& edge : edges) {
-    const Index v = std::get<1>(edge);
-    const Index w = std::get<2>(edge);
+  for (const auto& [length, v, w] : edges) {
     if (pieces.find(v) == pieces.find(w))
       continue;
     const Tube tube = shortestTube(points, spheres, corners, is_taken, v, w);
@@ -267,19 +242,8 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
   for (Eigen::Index t = 0; t < spheres.cols(); ++t)
     if (is_taken[t] == 0)
       triangles.push_back({spheres(0, t), spheres(1, t), spheres(2, t)});
-  triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
-                                 [&](const auto& t) { return pieces.find(t[0]) != largest; }),
-                  triangles.end());
-  return matrixOf(triangles);
-}
-
-/// \param closed a closed manifold in one piece.
-std::size_t genusOf(const Triangles& closed, std::size_t vertices) {
-  Indexed<char> is_used(vertices, 0);
-  for (const Index v : closed.reshaped())
-    is_used[v] = 1;
-  const auto used = std::count(is_used.begin(), is_used.end(), char{1});
-  return static_cast<std::size_t>(1 + (closed.cols() / 2 - used) / 2);
+  const Triangles all = matrixOf(triangles);
+  return filtered(all, [&](Eigen::Index t) { return pieces.find(all(0, t)) == largest; });
 }
 
 /// A region of a closed mesh that grows triangle by triangle, those with short sides first, and
@@ -409,7 +373,7 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
         joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
     if (mesh.triangles.cols() == 0)
       return std::nullopt;
-    if (genusOf(mesh.triangles, graph.size()) == genus)
+    if (checkTopology(mesh.triangles, graph.size()).genus == static_cast<long long>(genus))
       break;
     const SphereMesh whole(mesh.triangles, graph.size());
     PlanarRegion region(points, whole);

@@ -1,17 +1,13 @@
 #include "filled_graph.h"
 
-#include "graph.h"
 #include "graph_building.h"
-#include "indexed.h"
 #include "pi.h"
 #include "ringed_disc.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {

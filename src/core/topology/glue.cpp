@@ -66,20 +66,21 @@ public:
         seen_(mesh_.slotCount()) {}
 
   /// Makes the spheres ready to be glued. Returns whether that succeeded.
-  bool prepare() { return recoverRims() && emptyRims() && flipDoubles(); }
+  bool prepare() {
+    return forEachRimEdge([&](Index v, Index w) { return recover(v, w); }) && emptyRims() &&
+           flipDoubles();
+  }
 
   /// The triangles outside of the rims, by the nodes before the cut.
   Triangles glued() const {
     const Indexed<char> inside = insides();
-    std::vector<Index> outside;
+    std::vector<Index> corners;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (mesh_.vertex(t, 0) >= 0 && inside[t] == 0)
-        outside.push_back(t);
-    Triangles result(3, static_cast<Eigen::Index>(outside.size()));
-    for (std::size_t i = 0; i < outside.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        result(k, static_cast<Eigen::Index>(i)) = rims_.node_of[mesh_.vertex(outside[i], k)];
-    return result;
+        for (const Index v : mesh_.vertices(t))
+          corners.push_back(rims_.node_of[v]);
+    return Eigen::Map<const Triangles>(corners.data(), 3,
+                                       static_cast<Eigen::Index>(corners.size() / 3));
   }
 
 private:
@@ -90,10 +91,6 @@ private:
         if (!visit(v, rims_.next[v]))
           return false;
     return true;
-  }
-
-  bool recoverRims() {
-    return forEachRimEdge([&](Index v, Index w) { return recover(v, w); });
   }
 
   /// Makes an edge by flips, without losing any of the rims'.
@@ -211,19 +208,14 @@ private:
 
   /// \param inside triangles, before others were put back.
   bool putBack(Index v, const Indexed<char>& inside) {
-    for (const Index w : cut_.graph.row(v)) {
-      if (mesh_.triangleAt(w) < 0)
-        continue;
-      Index place = -1;
-      mesh_.anyAround(w, [&](Index t, int) {
-        place = inside[t] == 0 ? t : -1;
-        return place >= 0;
-      });
-      if (place >= 0) {
-        mesh_.split(place, v);
+    const auto splits_outside = [&](Index t, int) {
+      if (inside[t] == 0)
+        mesh_.split(t, v);
+      return inside[t] == 0;
+    };
+    for (const Index w : cut_.graph.row(v))
+      if (mesh_.triangleAt(w) >= 0 && mesh_.anyAround(w, splits_outside))
         return true;
-      }
-    }
     return false;
   }
 

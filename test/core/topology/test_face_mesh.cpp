@@ -29,6 +29,15 @@ std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
   return edges;
 }
 
+/// Number of edges of a mesh that another one does not have.
+std::size_t countLost(const Triangles& before, const Triangles& after) {
+  const auto left = edgesOf(after);
+  std::size_t lost = 0;
+  for (const auto& edge : edgesOf(before))
+    lost += left.count(edge) == 0 ? 1 : 0;
+  return lost;
+}
+
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   const Positions torus = torusCloud(40, 16, 1.0, 0.4);
   const Graph graph = delaunayGraph(torus);
@@ -36,11 +45,7 @@ TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   ASSERT_TRUE(cut);
   EXPECT_TRUE(isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
   // It is cut across the tube, of 16 points, or along it, of 40.
-  const auto of_cut = edgesOf(*cut);
-  std::size_t lost = 0;
-  for (const auto& edge : edgesOf(*meshOf(torus, graph, 1)))
-    lost += of_cut.count(edge) == 0 ? 1 : 0;
-  EXPECT_LE(lost, 4U * 40U);
+  EXPECT_LE(countLost(*meshOf(torus, graph, 1), *cut), 4U * 40U);
 }
 
 TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
@@ -62,11 +67,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   const auto mesh = meshOf(thin, withEdges(graph, bridges), 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 1500));
-  const auto found = edgesOf(*mesh);
-  std::size_t lost = 0;
-  for (const auto& edge : edgesOf(*right))
-    lost += found.count(edge) == 0 ? 1 : 0;
-  EXPECT_LT(lost, 450U);  // of 4,494
+  EXPECT_LT(countLost(*right, *mesh), 450U);  // of 4,494
 }
 
 TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
