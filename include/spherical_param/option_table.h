@@ -20,7 +20,7 @@ using OptionValue = std::variant<std::monostate, std::int64_t, double, std::stri
 /// One row of the table of options.
 struct OptionRow {
   std::string name;                  ///< the same in tools, Python and ROS
-  std::string field;                 ///< of Options, such as "graph.k"
+  std::string field;                 ///< of Options, such as "paper.k"
   std::string help;                  ///< one line
   bool expert = false;               ///< most users do not need it
   bool optional = false;             ///< may be unset

@@ -50,16 +50,17 @@ void assign(Value& field, const OptionValue& value) {
 /// A member of Options, or of one of its members, as a reference.
 template <typename Member>
 auto memberOf(Member member) {
-  return [member](Options& options) -> decltype(auto) { return (options.*member); };
+  return [member](auto& options) -> decltype(auto) { return (options.*member); };
 }
 template <typename Group, typename Member>
 auto memberOf(Group group, Member member) {
-  return [group, member](Options& options) -> decltype(auto) { return (options.*group.*member); };
+  return [group, member](auto& options) -> decltype(auto) { return (options.*group.*member); };
 }
 
-OptionRow rowOf(const char* name, const char* path, const char* help, Audience audience) {
+/// A row whose name is the last part of its field's path.
+OptionRow rowOf(const std::string& path, const char* help, Audience audience) {
   OptionRow row;
-  row.name = name;
+  row.name = path.substr(path.rfind('.') + 1);
   row.field = path;
   row.help = help;
   row.expert = audience == Expert;
@@ -68,36 +69,35 @@ OptionRow rowOf(const char* name, const char* path, const char* help, Audience a
 
 /// The row of a number.
 ///
-/// \param field of Options, as a reference.
-template <typename Field>
-OptionRow number(const char* name, const char* path, const char* help, Audience audience,
-                 double min, double max, Field field) {
+/// \param members as of memberOf().
+template <typename... Members>
+OptionRow number(const char* path, const char* help, Audience audience, double min, double max,
+                 Members... members) {
+  const auto field = memberOf(members...);
   using Value = std::decay_t<decltype(field(std::declval<Options&>()))>;
-  OptionRow row = rowOf(name, path, help, audience);
+  OptionRow row = rowOf(path, help, audience);
   row.optional = IsOptional<Value>::value;
   row.is_number = true;
   row.min = min;
   row.max = max;
   row.is_integer = !std::is_same_v<Value, double> && !std::is_same_v<Value, std::optional<double>>;
-  row.get = [field](const Options& options) {
-    Options copy = options;
-    return valueOf(field(copy));
-  };
+  row.get = [field](const Options& options) { return valueOf(field(options)); };
   row.set = [field](Options& options, const OptionValue& value) { assign(field(options), value); };
   return row;
 }
 
 /// The row of an enumeration.
-template <typename Enum, typename Field>
-OptionRow choice(const char* name, const char* path, const char* help, Audience audience,
-                 const std::vector<std::pair<const char*, Enum>>& names, Field field) {
-  OptionRow row = rowOf(name, path, help, audience);
+template <typename Enum, typename... Members>
+OptionRow choice(const char* path, const char* help, Audience audience,
+                 const std::vector<std::pair<const char*, Enum>>& names, Members... members) {
+  const auto field = memberOf(members...);
+  OptionRow row = rowOf(path, help, audience);
   for (const auto& entry : names)
     row.choices.emplace_back(entry.first);
   row.get = [field, names](const Options& options) -> OptionValue {
-    Options copy = options;
-    const auto found = std::find_if(names.begin(), names.end(),
-                                    [&](const auto& entry) { return entry.second == field(copy); });
+    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& entry) {
+      return entry.second == field(options);
+    });
     return found == names.end() ? OptionValue() : OptionValue(std::string(found->first));
   };
   row.set = [field, names](Options& options, const OptionValue& value) {
@@ -113,45 +113,34 @@ OptionRow aboveMin(OptionRow row) {
   return row;
 }
 
-OptionRow usedWith(std::vector<std::pair<std::string, std::vector<std::string>>> conditions,
-                   OptionRow row) {
-  row.used_with = std::move(conditions);
+OptionRow usedWith(const char* option, std::vector<std::string> values, OptionRow row) {
+  row.used_with.emplace_back(option, std::move(values));
   return row;
 }
 
 /// The row of an option of Method::Default alone.
 OptionRow byDefault(OptionRow row) {
-  return usedWith({{"method", {"default"}}}, std::move(row));
+  return usedWith("method", {"default"}, std::move(row));
 }
 
 /// The row of outliers: a number is the sigma of OutlierMode::Deviation.
 OptionRow outlierRow() {
-  OptionRow row = number(
-      "outliers", "outliers",
+  const char* const help =
       "outliers to leave out: stray points (auto), or points off the surface by this number of "
-      "standard deviations",
-      Everybody, 0, 1000, memberOf(&Options::outlier_sigma));
-  row.choices = {"topology", "none", "auto"};
-  row.get = [](const Options& options) -> OptionValue {
-    switch (options.outliers) {
-    case OutlierMode::AsTopology:
-      return std::string("topology");
-    case OutlierMode::None:
-      return std::string("none");
-    case OutlierMode::Auto:
-      return std::string("auto");
-    case OutlierMode::Deviation:
-      return options.outlier_sigma;
-    }
-    return {};
+      "standard deviations";
+  const OptionRow names = choice<OutlierMode>("outliers", help, Everybody,
+                                              {{"topology", OutlierMode::AsTopology},
+                                               {"none", OutlierMode::None},
+                                               {"auto", OutlierMode::Auto}},
+                                              &Options::outliers);
+  OptionRow row = number("outliers", help, Everybody, 0, 1000, &Options::outlier_sigma);
+  row.choices = names.choices;
+  row.get = [name_of = names.get](const Options& options) {
+    return options.outliers == OutlierMode::Deviation ? options.outlier_sigma : name_of(options);
   };
-  row.set = [](Options& options, const OptionValue& value) {
-    if (const auto* name = std::get_if<std::string>(&value)) {
-      options.outliers = *name == "auto"   ? OutlierMode::Auto
-                         : *name == "none" ? OutlierMode::None
-                                           : OutlierMode::AsTopology;
-      return;
-    }
+  row.set = [set_name = names.set](Options& options, const OptionValue& value) {
+    if (std::holds_alternative<std::string>(value))
+      return set_name(options, value);
     options.outliers = OutlierMode::Deviation;
     assign(options.outlier_sigma, value);
   };
@@ -161,132 +150,109 @@ OptionRow outlierRow() {
 std::vector<OptionRow> pointRows() {
   return {
       byDefault(choice<TopologyMode>(
-          "topology", "topology",
+          "topology",
           "topology of the mesh: what the cloud shows (parts, openings, handles, without stray "
           "points), or one sphere through every point",
           Everybody, {{"scan", TopologyMode::Scan}, {"sphere", TopologyMode::Sphere}},
-          memberOf(&Options::topology))),
+          &Options::topology)),
       outlierRow(),
       choice<PartsMode>(
-          "parts", "parts",
+          "parts",
           "parts of the cloud to mesh: all as one surface, the largest alone, or each by itself",
           Everybody,
           {{"topology", PartsMode::AsTopology},
            {"all", PartsMode::All},
            {"largest", PartsMode::Largest},
            {"each", PartsMode::Each}},
-          memberOf(&Options::parts)),
-      usedWith({{"parts", {"largest", "each"}}},
-               number("min_points", "min_points",
+          &Options::parts),
+      usedWith("parts", {"largest", "each"},
+               number("min_points",
                       "minimum number of points of a part; smaller parts are left out", Expert, 4,
-                      kMaxInt, memberOf(&Options::min_points))),
+                      kMaxInt, &Options::min_points)),
       choice<ConsolidationMode>(
-          "consolidation", "consolidation",
+          "consolidation",
           "auto: move noisy points to the sampled surface and merge them within their noise",
           Everybody, {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
-          memberOf(&Options::consolidation)),
+          &Options::consolidation),
   };
 }
 
 std::vector<OptionRow> methodRows() {
-  const auto of_paper = [](OptionRow row) {
-    return usedWith({{"method", {"paper"}}}, std::move(row));
-  };
+  const auto of_paper = [](OptionRow row) { return usedWith("method", {"paper"}, std::move(row)); };
   return {
-      choice<Method>("method", "method", "how the cloud is meshed; paper: as published in 2004",
-                     Expert, {{"default", Method::Default}, {"paper", Method::Paper}},
-                     memberOf(&Options::method)),
-      of_paper(number("k", "paper.k", "nearest neighbours of each point", Expert, 3, kMaxInt,
-                      memberOf(&Options::paper, &PaperOptions::k))),
-      of_paper(choice<EdgeWeights>("weights", "paper.weights", "weights of the Laplacian", Expert,
+      choice<Method>("method", "how the cloud is meshed; paper: as published in 2004", Expert,
+                     {{"default", Method::Default}, {"paper", Method::Paper}}, &Options::method),
+      of_paper(number("paper.k", "nearest neighbours of each point", Expert, 3, kMaxInt,
+                      &Options::paper, &PaperOptions::k)),
+      of_paper(choice<EdgeWeights>("paper.weights", "weights of the Laplacian", Expert,
                                    {{"adaptive", EdgeWeights::Adaptive},
                                     {"inverse", EdgeWeights::InverseLength},
                                     {"uniform", EdgeWeights::Uniform}},
-                                   memberOf(&Options::paper, &PaperOptions::weights))),
-      of_paper(aboveMin(number("damping", "paper.damping", "damping of the iteration", Expert, 0, 1,
-                               memberOf(&Options::paper, &PaperOptions::damping)))),
-      of_paper(number("max_iterations", "paper.max_iterations", "maximum number of iterations",
-                      Expert, 0, kMaxInt,
-                      memberOf(&Options::paper, &PaperOptions::max_iterations))),
-  };
-}
-
-std::vector<OptionRow> embeddingRows() {
-  return {
-      number("tolerance", "embedding.tolerance",
+                                   &Options::paper, &PaperOptions::weights)),
+      of_paper(aboveMin(number("paper.damping", "damping of the iteration", Expert, 0, 1,
+                               &Options::paper, &PaperOptions::damping))),
+      of_paper(number("paper.max_iterations", "maximum number of iterations", Expert, 0, kMaxInt,
+                      &Options::paper, &PaperOptions::max_iterations)),
+      number("embedding.tolerance",
              "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert,
-             0, 1, memberOf(&Options::embedding, &EmbeddingOptions::tolerance)),
-      byDefault(number("starts", "embedding.starts", "number of starts on the coarsest level",
-                       Expert, 1, 100, memberOf(&Options::embedding, &EmbeddingOptions::starts))),
-      number("history_vertices", "embedding.history_vertices",
+             0, 1, &Options::embedding, &EmbeddingOptions::tolerance),
+      byDefault(number("embedding.starts", "number of starts on the coarsest level", Expert, 1, 100,
+                       &Options::embedding, &EmbeddingOptions::starts)),
+      number("embedding.history_vertices",
              "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
-             memberOf(&Options::embedding, &EmbeddingOptions::history_vertices)),
-      number("history_frames", "embedding.history_frames",
-             "maximum number of states of these paths", Expert, 2, 10000,
-             memberOf(&Options::embedding, &EmbeddingOptions::history_frames)),
-      number("smoothing", "smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000,
-             memberOf(&Options::smoothing)),
+             &Options::embedding, &EmbeddingOptions::history_vertices),
+      number("embedding.history_frames", "maximum number of states of these paths", Expert, 2,
+             10000, &Options::embedding, &EmbeddingOptions::history_frames),
+      number("smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000, &Options::smoothing),
   };
 }
 
 std::vector<OptionRow> surfaceRows() {
   return {
       byDefault(choice<SurfaceMode>(
-          "surface", "surface", "openings are filled, left open, or left open if certain (auto)",
-          Everybody,
+          "surface", "openings are filled, left open, or left open if certain (auto)", Everybody,
           {{"topology", SurfaceMode::AsTopology},
            {"closed", SurfaceMode::Closed},
            {"open", SurfaceMode::Open},
            {"auto", SurfaceMode::Auto}},
-          memberOf(&Options::surface))),
-      byDefault(number("fill_holes", "fill_holes",
-                       "openings of up to this number of edges are filled", Expert, 0, kMaxInt,
-                       memberOf(&Options::fill_holes))),
-      byDefault(number("fill_holes_area", "fill_holes_area",
-                       "openings of up to this area are filled", Expert, 0, 1e15,
-                       memberOf(&Options::fill_holes_area))),
+          &Options::surface)),
+      byDefault(number("fill_holes", "openings of up to this number of edges are filled", Expert, 0,
+                       kMaxInt, &Options::fill_holes)),
+      byDefault(number("fill_holes_area", "openings of up to this area are filled", Expert, 0, 1e15,
+                       &Options::fill_holes_area)),
       byDefault(choice<FillMode>(
-          "fill", "fill",
+          "fill",
           "smooth: vertices are added in filled openings, which go on as the surface around does",
-          Everybody, {{"flat", FillMode::Flat}, {"smooth", FillMode::Smooth}},
-          memberOf(&Options::fill))),
+          Everybody, {{"flat", FillMode::Flat}, {"smooth", FillMode::Smooth}}, &Options::fill)),
       byDefault(choice<HandleMode>(
-          "handles", "handles",
+          "handles",
           "handles of the surface that the mesh has: those that are certain (auto), or none",
           Everybody,
           {{"topology", HandleMode::AsTopology},
            {"none", HandleMode::None},
            {"auto", HandleMode::Auto}},
-          memberOf(&Options::handles))),
-      byDefault(choice<IntersectionMode>("intersections", "intersections",
+          &Options::handles)),
+      byDefault(choice<IntersectionMode>("intersections",
                                          "triangles that intersect are taken apart, if need be "
                                          "by leaving out triangles and points, or kept",
                                          Everybody,
                                          {{"topology", IntersectionMode::AsTopology},
                                           {"remove", IntersectionMode::Remove},
                                           {"keep", IntersectionMode::Keep}},
-                                         memberOf(&Options::intersections))),
+                                         &Options::intersections)),
   };
 }
 
 std::vector<OptionRow> runRows() {
   return {
-      number("seed", "seed", "seed of all random choices", Expert, 0,
-             std::numeric_limits<std::uint32_t>::max(), memberOf(&Options::seed)),
-      byDefault(number("time_limit", "time_limit",
+      number("seed", "seed of all random choices", Expert, 0,
+             std::numeric_limits<std::uint32_t>::max(), &Options::seed),
+      byDefault(number("time_limit",
                        "seconds until the work ends with the best mesh so far; 0: with the first; "
                        "unset: no limit",
-                       Everybody, 0, 1e9, memberOf(&Options::time_limit))),
-      number("threads", "threads", "threads; 0: one for each processor", Expert, 0, 1024,
-             memberOf(&Options::threads)),
+                       Everybody, 0, 1e9, &Options::time_limit)),
+      number("threads", "threads; 0: one for each processor", Expert, 0, 1024, &Options::threads),
   };
-}
-
-std::vector<OptionRow> makeTable() {
-  std::vector<OptionRow> table;
-  for (const auto& rows : {pointRows(), methodRows(), embeddingRows(), surfaceRows(), runRows()})
-    table.insert(table.end(), rows.begin(), rows.end());
-  return table;
 }
 
 [[noreturn]] void refuse(const OptionRow& row, const std::string& what) {
@@ -294,6 +260,7 @@ std::vector<OptionRow> makeTable() {
 }
 
 void checkValue(const OptionRow& row, const OptionValue& value) {
+  const std::string given = "= " + textOf(value);
   if (value.index() == 0) {
     if (!row.optional)
       refuse(row, "has no value");
@@ -303,8 +270,7 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   if (name != nullptr || !row.is_number) {
     if (name == nullptr ||
         std::find(row.choices.begin(), row.choices.end(), *name) == row.choices.end())
-      refuse(row,
-             "= " + textOf(value) + (row.choices.empty() ? " is not a number" : " is not known"));
+      refuse(row, given + (row.choices.empty() ? " is not a number" : " is not known"));
     return;
   }
   double number = 0.0;
@@ -313,16 +279,20 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   else if (const auto* real = std::get_if<double>(&value); real != nullptr && !row.is_integer)
     number = *real;
   else
-    refuse(row,
-           "= " + textOf(value) + (row.is_integer ? " is not an integer" : " is not a number"));
+    refuse(row, given + (row.is_integer ? " is not an integer" : " is not a number"));
   if (!(number >= row.min && number <= row.max) || (row.min_excluded && number == row.min))
-    refuse(row, "= " + textOf(value) + " is out of range");
+    refuse(row, given + " is out of range");
 }
 
 }  // namespace
 
 const std::vector<OptionRow>& optionTable() {
-  static const std::vector<OptionRow> table = makeTable();
+  static const std::vector<OptionRow> table = [] {
+    std::vector<OptionRow> all;
+    for (const auto& rows : {pointRows(), methodRows(), surfaceRows(), runRows()})
+      all.insert(all.end(), rows.begin(), rows.end());
+    return all;
+  }();
   return table;
 }
 
@@ -376,16 +346,15 @@ std::string textOf(const OptionValue& value) {
 
 Options withTopology(Options options) {
   const bool is_scan = options.topology == TopologyMode::Scan && options.method == Method::Default;
-  if (options.outliers == OutlierMode::AsTopology)
-    options.outliers = is_scan ? OutlierMode::Auto : OutlierMode::None;
-  if (options.parts == PartsMode::AsTopology)
-    options.parts = is_scan ? PartsMode::Each : PartsMode::All;
-  if (options.surface == SurfaceMode::AsTopology)
-    options.surface = is_scan ? SurfaceMode::Auto : SurfaceMode::Closed;
-  if (options.handles == HandleMode::AsTopology)
-    options.handles = is_scan ? HandleMode::Auto : HandleMode::None;
-  if (options.intersections == IntersectionMode::AsTopology)
-    options.intersections = is_scan ? IntersectionMode::Remove : IntersectionMode::Keep;
+  const auto resolve = [&](auto& mode, auto of_scan, auto of_sphere) {
+    if (mode == decltype(of_scan)::AsTopology)
+      mode = is_scan ? of_scan : of_sphere;
+  };
+  resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
+  resolve(options.parts, PartsMode::Each, PartsMode::All);
+  resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);
+  resolve(options.handles, HandleMode::Auto, HandleMode::None);
+  resolve(options.intersections, IntersectionMode::Remove, IntersectionMode::Keep);
   return options;
 }
 
