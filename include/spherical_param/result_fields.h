@@ -79,17 +79,14 @@ constexpr auto unlessEmpty(Member member) {
   return [member](auto& self) { return (self.*member).size() == 0 ? nullptr : &(self.*member); };
 }
 
-/// Name and help of a struct, selected by the pointer's type. \return both
-constexpr ResultField describe(const MeshTopology*) {
-  return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
-}
 /// Calls visit(field, access) for all fields of a struct, selected by the pointer's type.
 /// std::invoke(access, struct) is a reference to the stored value, a pointer to it (null if it has
 /// no meaning), or a derived value.
 ///
 /// \param visit function that takes a ResultField and the access to its value.
+/// \return name and help of the struct.
 template <typename Visit>
-void visitFields(const MeshTopology*, const Visit& visit) {
+constexpr ResultField visitFields(const MeshTopology*, const Visit& visit) {
   using Of = MeshTopology;
   visit({"vertices", "used by triangles"}, &Of::vertices);
   visit({"edges", "undirected"}, &Of::edges);
@@ -108,17 +105,12 @@ void visitFields(const MeshTopology*, const Visit& visit) {
   visit({"nonmanifold_vertices", "their triangles are not one fan", 0, FieldKind::CppOnly},
         &Of::nonmanifold_vertices);
   visit({"unused_vertices", "they have no triangles", 0, FieldKind::CppOnly}, &Of::unused_vertices);
+  return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
 }
 
 /// \cond  the same for all other structs
-constexpr ResultField describe(const MeshMeasures*) {
-  return {"Measures",
-          "Size, place and mass properties of the mesh and the solid that it encloses. Volume, "
-          "centroid and inertia are none if the mesh is open or folded, or more than 1 % of its "
-          "triangles intersect."};
-}
 template <typename Visit>
-void visitFields(const MeshMeasures*, const Visit& visit) {
+constexpr ResultField visitFields(const MeshMeasures*, const Visit& visit) {
   using Of = MeshMeasures;
   visit({"volume", "of the solid, positive if the mesh faces outward", 3, FieldKind::OfSolid},
         &Of::volume);
@@ -129,90 +121,78 @@ void visitFields(const MeshMeasures*, const Visit& visit) {
   visit({"centroid", "centre of mass of the solid", 1, FieldKind::OfSolid}, &Of::centroid);
   visit({"inertia", "of the solid at unit density about the centroid", 5, FieldKind::OfSolid},
         &Of::inertia);
+  return {"Measures",
+          "Size, place and mass properties of the mesh and the solid that it encloses. Volume, "
+          "centroid and inertia are none if the mesh is open or folded, or more than 1 % of its "
+          "triangles intersect."};
 }
 
-constexpr ResultField describe(const StageTime*) {
-  return {"StageTime", "Time of one stage."};
-}
 template <typename Visit>
-void visitFields(const StageTime*, const Visit& visit) {
+constexpr ResultField visitFields(const StageTime*, const Visit& visit) {
   visit({"name", "of the stage"}, &StageTime::name);
   visit({"seconds", "wall time [s]"}, &StageTime::seconds);
+  return {"StageTime", "Time of one stage."};
 }
 
-constexpr ResultField describe(const Finding*) {
+template <typename Visit>
+constexpr ResultField visitFields(const Finding*, const Visit& visit) {
+  visit({"text", "a clause, e.g. '2 separate parts (395 and 5,633 points)'"}, &Finding::text);
+  visit({"option", "name of the option that helps; empty if none does"}, &Finding::option);
+  visit({"value", "of that option"}, &Finding::value);
+  visit({"is_fault", "a self-intersection, fold, filled opening, cut handle or joined part"},
+        &Finding::is_fault);
+  visit({"is_consequence", "the option of another finding deals with this fault, too"},
+        &Finding::is_consequence);
   return {"Finding", "A remark on a mesh, and the option that helps."};
 }
-template <typename Visit>
-void visitFields(const Finding*, const Visit& visit) {
-  using Of = Finding;
-  visit({"text", "a clause, e.g. '2 separate parts (395 and 5,633 points)'"}, &Of::text);
-  visit({"option", "name of the option that helps; empty if none does"}, &Of::option);
-  visit({"value", "of that option"}, &Of::value);
-  visit({"is_fault", "a self-intersection, fold, filled opening, cut handle or joined part"},
-        &Of::is_fault);
-  visit({"is_consequence", "the option of another finding deals with this fault, too"},
-        &Of::is_consequence);
-}
 
-constexpr ResultField describe(const Opening*) {
+template <typename Visit>
+constexpr ResultField visitFields(const Opening*, const Visit& visit) {
+  visit({"is_filled", "the mesh has triangles over it"}, &Opening::is_filled);
+  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9, or 1 for the rim of a low sheet"},
+        &Opening::certainty);
+  visit({"is_certain", "certainty is 1 and it is not flat"}, &Opening::isCertain);
+  visit({"is_flat", "the loop lies in a plane, and is no rim of a sheet: perhaps a flat face"},
+        &Opening::is_flat);
+  visit({"center", "mean of the loop", 1}, &Opening::center);
+  visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Opening::width);
+  visit({"spacing", "mean point spacing at the loop", 1}, &Opening::spacing);
+  visit({"area", "length of the vector area of the loop; if it curls, least area over it", 2},
+        &Opening::area);
+  visit({"boundary_length", "of the loop", 1}, &Opening::boundary_length);
+  visit({"loop", "vertices around it, in order; may list a vertex twice", 0, FieldKind::Loops},
+        &Opening::loop);
+  visit({"triangles", "of the mesh over it if it is filled", 0, FieldKind::TriangleList},
+        &Opening::triangles);
   return {"Opening", "An opening of the sampled surface: a wide face of its neighbour graph."};
 }
-template <typename Visit>
-void visitFields(const Opening*, const Visit& visit) {
-  using Of = Opening;
-  visit({"is_filled", "the mesh has triangles over it"}, &Of::is_filled);
-  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9, or 1 for the rim of a low sheet"},
-        &Of::certainty);
-  visit({"is_certain", "certainty is 1 and it is not flat"}, &Of::isCertain);
-  visit({"is_flat", "the loop lies in a plane, and is no rim of a sheet: perhaps a flat face"},
-        &Of::is_flat);
-  visit({"center", "mean of the loop", 1}, &Of::center);
-  visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
-  visit({"spacing", "mean point spacing at the loop", 1}, &Of::spacing);
-  visit({"area", "length of the vector area of the loop; if it curls, least area over it", 2},
-        &Of::area);
-  visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
-  visit({"loop", "vertices around it, in order; may list a vertex twice", 0, FieldKind::Loops},
-        &Of::loop);
-  visit({"triangles", "of the mesh over it if it is filled", 0, FieldKind::TriangleList},
-        &Of::triangles);
-}
 
-constexpr ResultField describe(const HandleLoop*) {
+template <typename Visit>
+constexpr ResultField visitFields(const HandleLoop*, const Visit& visit) {
+  visit({"is_cut", "the mesh has no handle there"}, &HandleLoop::is_cut);
+  visit({"certainty", "from 0 to 1, by the sizes of the handle in points"}, &HandleLoop::certainty);
+  visit({"center", "mean of the loop", 1}, &HandleLoop::center);
+  visit({"length", "of the loop", 1}, &HandleLoop::length);
+  visit({"loop", "vertices around it, in order", 0, FieldKind::Loops}, &HandleLoop::loop);
   return {
       "HandleLoop",
       "A handle of the sampled surface: a loop along which it can be cut so that it stays in one "
       "piece."};
 }
-template <typename Visit>
-void visitFields(const HandleLoop*, const Visit& visit) {
-  using Of = HandleLoop;
-  visit({"is_cut", "the mesh has no handle there"}, &Of::is_cut);
-  visit({"certainty", "from 0 to 1, by the sizes of the handle in points"}, &Of::certainty);
-  visit({"center", "mean of the loop", 1}, &Of::center);
-  visit({"length", "of the loop", 1}, &Of::length);
-  visit({"loop", "vertices around it, in order", 0, FieldKind::Loops}, &Of::loop);
-}
 
-constexpr ResultField describe(const Handle*) {
-  return {"Handle",
-          "Neighbours along the surface that are far apart on the mesh: probably a handle."};
-}
 template <typename Visit>
-void visitFields(const Handle*, const Visit& visit) {
+constexpr ResultField visitFields(const Handle*, const Visit& visit) {
   using Of = Handle;
   visit({"edges", "torn edges of the neighbour graph"}, &Of::edges);
   visit({"size", "diagonal of the box around them", 1}, &Of::size);
   visit({"center", "mean of their ends", 1}, &Of::center);
   visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
+  return {"Handle",
+          "Neighbours along the surface that are far apart on the mesh: probably a handle."};
 }
 
-constexpr ResultField describe(const PartBridge*) {
-  return {"PartBridge", "Two parts of the cloud with a gap between them."};
-}
 template <typename Visit>
-void visitFields(const PartBridge*, const Visit& visit) {
+constexpr ResultField visitFields(const PartBridge*, const Visit& visit) {
   using Of = PartBridge;
   visit({"points", "of the smaller part"}, &Of::points);
   visit({"other_points", "of the larger part"}, &Of::other_points);
@@ -220,13 +200,11 @@ void visitFields(const PartBridge*, const Visit& visit) {
   visit({"spacing", "point spacing at its ends", 1}, &Of::spacing);
   visit({"center", "mean of the ends of all its bridges", 1}, &Of::center);
   visit({"vertices", "the ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
+  return {"PartBridge", "Two parts of the cloud with a gap between them."};
 }
 
-constexpr ResultField describe(const SurfaceDiagnosis*) {
-  return {"Diagnosis", "Evidence against a closed surface without handles, and its place."};
-}
 template <typename Visit>
-void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
+constexpr ResultField visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
   visit({"kind", "the gravest finding"}, &Of::kind);
   visit({"looks_closed_genus0", "nothing was found"}, &Of::looksClosedGenus0);
@@ -242,26 +220,22 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   visit({"bridges", "in descending number of points"}, &Of::bridges);
   visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
         unlessEmpty(&Of::triangle_marks));
+  return {"Diagnosis", "Evidence against a closed surface without handles, and its place."};
 }
 
-constexpr ResultField describe(const ConsolidationReport*) {
-  return {"Consolidation", "What consolidation found and did."};
-}
 template <typename Visit>
-void visitFields(const ConsolidationReport*, const Visit& visit) {
+constexpr ResultField visitFields(const ConsolidationReport*, const Visit& visit) {
   using Of = ConsolidationReport;
   visit({"noise", "median distance of the points from the surface", 1}, &Of::noise);
   visit({"merged", "points merged into others, exact duplicates not counted"}, &Of::merged);
   visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
   visit({"mean_displacement", "over the points", 1}, &Of::mean_displacement);
   visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
+  return {"Consolidation", "What consolidation found and did."};
 }
 
-constexpr ResultField describe(const LevelReport*) {
-  return {"EmbeddingLevel", "Work on one level of the embedding."};
-}
 template <typename Visit>
-void visitFields(const LevelReport*, const Visit& visit) {
+constexpr ResultField visitFields(const LevelReport*, const Visit& visit) {
   using Of = LevelReport;
   visit({"nodes", "of the level's graph"}, &Of::nodes);
   visit({"edges", "undirected"}, &Of::edges);
@@ -269,13 +243,11 @@ void visitFields(const LevelReport*, const Visit& visit) {
   visit({"newton_iterations", "steps of Newton's method"}, &Of::newton_iterations);
   visit({"linear_iterations", "conjugate gradient steps within these"}, &Of::linear_iterations);
   visit({"residual", "mean length of the tangential Laplacian at the end [radius]"}, &Of::residual);
+  return {"EmbeddingLevel", "Work on one level of the embedding."};
 }
 
-constexpr ResultField describe(const EmbeddingReport*) {
-  return {"Embedding", "How the embedding on the sphere was reached."};
-}
 template <typename Visit>
-void visitFields(const EmbeddingReport*, const Visit& visit) {
+constexpr ResultField visitFields(const EmbeddingReport*, const Visit& visit) {
   using Of = EmbeddingReport;
   visit({"stop_reason", "why the work on it ended"}, &Of::stop_reason);
   visit({"converged", "the residual reached the tolerance"}, &Of::converged);
@@ -289,37 +261,30 @@ void visitFields(const EmbeddingReport*, const Visit& visit) {
   visit({"start_level", "level on which it started; 0 is the graph itself"}, &Of::start_level);
   visit({"barrier", "where a barrier keeps it from collapsing"}, &Of::barrier);
   visit({"levels", "the finest first"}, &Of::levels);
+  return {"Embedding", "How the embedding on the sphere was reached."};
 }
 
-constexpr ResultField describe(const HistoryFrame*) {
+template <typename Visit>
+constexpr ResultField visitFields(const HistoryFrame*, const Visit& visit) {
+  visit({"level", "0 is the graph itself, 1 the next coarser level"}, &HistoryFrame::level);
+  visit({"nodes", "of that level"}, &HistoryFrame::nodes);
+  visit({"step", "the work before it"}, &HistoryFrame::step);
+  visit({"iteration", "number of these steps on this level so far"}, &HistoryFrame::iteration);
+  visit({"residual", "mean tangential Laplacian, if known [radius]"}, &HistoryFrame::residual);
+  visit({"sphere", "unit vectors, of the vertices of the history"}, &HistoryFrame::sphere);
   return {"HistoryFrame", "One state of the embedding."};
 }
-template <typename Visit>
-void visitFields(const HistoryFrame*, const Visit& visit) {
-  using Of = HistoryFrame;
-  visit({"level", "0 is the graph itself, 1 the next coarser level"}, &Of::level);
-  visit({"nodes", "of that level"}, &Of::nodes);
-  visit({"step", "the work before it"}, &Of::step);
-  visit({"iteration", "number of these steps on this level so far"}, &Of::iteration);
-  visit({"residual", "mean tangential Laplacian, if known [radius]"}, &Of::residual);
-  visit({"sphere", "unit vectors, of the vertices of the history"}, &Of::sphere);
-}
 
-constexpr ResultField describe(const EmbeddingHistory*) {
-  return {"History", "How the embedding unfolded, for some of the vertices."};
-}
 template <typename Visit>
-void visitFields(const EmbeddingHistory*, const Visit& visit) {
+constexpr ResultField visitFields(const EmbeddingHistory*, const Visit& visit) {
   using Of = EmbeddingHistory;
   visit({"vertices", "the recorded vertices", 0, FieldKind::VertexList}, &Of::vertices);
   visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
+  return {"History", "How the embedding unfolded, for some of the vertices."};
 }
 
-constexpr ResultField describe(const SmoothingReport*) {
-  return {"Smoothing", "Distance of the smoothed surface from the given one."};
-}
 template <typename Visit>
-void visitFields(const SmoothingReport*, const Visit& visit) {
+constexpr ResultField visitFields(const SmoothingReport*, const Visit& visit) {
   using Of = SmoothingReport;
   visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
   visit({"mean_displacement", "over the points of triangles", 1}, &Of::mean_displacement);
@@ -328,13 +293,11 @@ void visitFields(const SmoothingReport*, const Visit& visit) {
   visit({"volume_after", "signed volume enclosed", 3}, &Of::volume_after);
   visit({"self_intersections", "pairs of triangles, on the smoothed points, or a sample"},
         &Of::self_intersections);
+  return {"Smoothing", "Distance of the smoothed surface from the given one."};
 }
 
-constexpr ResultField describe(const Surface*) {
-  return {"Surface", "A mesh through all points, its map to the sphere, and their quality."};
-}
 template <typename Visit>
-void visitFields(const Surface*, const Visit& visit) {
+constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   using Of = Surface;
   visit({"verdict", "a headline, e.g. 'A sound mesh with 2 openings.'"}, &Of::verdict);
   visit({"findings", "remarks and remedies; empty if all is well"}, &Of::findings);
@@ -402,13 +365,11 @@ void visitFields(const Surface*, const Visit& visit) {
         &Of::vertex_of_input);
   visit({"input_of_vertex", "first input point at that position", 0, FieldKind::PerVertex},
         &Of::input_of_vertex);
+  return {"Surface", "A mesh through all points, its map to the sphere, and their quality."};
 }
 
-constexpr ResultField describe(const LeftOut*) {
-  return {"LeftOut", "Input points that are in no surface, by reason."};
-}
 template <typename Visit>
-void visitFields(const LeftOut*, const Visit& visit) {
+constexpr ResultField visitFields(const LeftOut*, const Visit& visit) {
   using Of = LeftOut;
   visit({"not_finite", "with a coordinate that is not finite", 0, FieldKind::Inputs},
         &Of::not_finite);
@@ -419,26 +380,40 @@ void visitFields(const LeftOut*, const Visit& visit) {
   visit(
       {"unmeshed", "of meshed parts: triangles through them would intersect", 0, FieldKind::Inputs},
       &Of::unmeshed);
+  return {"LeftOut", "Input points that are in no surface, by reason."};
 }
 
-constexpr ResultField describe(const Result*) {
-  return {"Result", "The result of reconstruct()."};
-}
 template <typename Visit>
-void visitFields(const Result*, const Visit& visit) {
-  using Of = Result;
-  visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Of::verdict);
-  visit({"findings", "of all surfaces; with several, each names its parts"}, &Of::findings);
-  visit({"usable", "all surfaces are usable"}, &Of::isUsable);
-  visit({"failures", "why parts could not be meshed"}, &Of::failures);
-  visit({"left_out", "points in no surface"}, &Of::left_out);
-  visit({"surfaces", "one for each meshed part, the largest first"}, &Of::surfaces);
-  visit({"stages", "in the order of the work, of all surfaces together"}, &Of::stages);
+constexpr ResultField visitFields(const Result*, const Visit& visit) {
+  visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Result::verdict);
+  visit({"findings", "of all surfaces; with several, each names its parts"}, &Result::findings);
+  visit({"usable", "all surfaces are usable"}, &Result::isUsable);
+  visit({"failures", "why parts could not be meshed"}, &Result::failures);
+  visit({"left_out", "points in no surface"}, &Result::left_out);
+  visit({"surfaces", "one for each meshed part, the largest first"}, &Result::surfaces);
+  visit({"stages", "in the order of the work, of all surfaces together"}, &Result::stages);
+  return {"Result", "The result of reconstruct()."};
 }
 
 /// \endcond
 
-/// Whether describe() and visitFields() exist for a struct, selected by the pointer's type.
+/// A visit of fields that does nothing.
+struct NoVisit {
+  /// Takes a field and the access to its value.
+  template <typename Access>
+  constexpr void operator()(const ResultField&, const Access&) const {}
+};
+
+/// Name and help of a struct, selected by the pointer's type.
+///
+/// \param self pointer to the struct; may be null.
+/// \return both.
+template <typename Struct>
+constexpr auto describe(const Struct* self) -> decltype(visitFields(self, NoVisit())) {
+  return visitFields(self, NoVisit());
+}
+
+/// Whether visitFields() exists for a struct, selected by the pointer's type.
 ///
 /// \param self pointer to the struct; may be null.
 /// \return true if they do.
