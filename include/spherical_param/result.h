@@ -27,9 +27,9 @@ struct StageTime {
 struct Finding {
   std::string text;  ///< a clause, e.g. "2 separate parts (395 and 5,633 points)"
   /// The option that helps, a name of optionTable(); empty if none does.
-  std::string option;
-  std::string value;      ///< of that option, e.g. "largest"
-  bool is_fault = false;  ///< a self-intersection, fold, filled opening, cut handle or joined part
+  std::string option = {};
+  std::string value = {};  ///< of that option, e.g. "largest"
+  bool is_fault = false;   ///< a self-intersection, fold, filled opening, cut handle or joined part
   /// The option of another finding of the same surface deals with this fault as well.
   bool is_consequence = false;
 };

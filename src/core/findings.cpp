@@ -164,16 +164,14 @@ int moreIterations(int iterations) {
 void addOfEmbedding(const Options& options, const Surface& result, std::vector<Finding>& findings) {
   const EmbeddingReport& embedding = result.embedding;
   if (embedding.fallback_start)
-    findings.push_back(
-        {"the embedding collapsed and was replaced by one of lower quality", "", "", false});
+    findings.push_back({"the embedding collapsed and was replaced by one of lower quality"});
   else if (embedding.stop_reason == StopReason::Collapsed)
     findings.push_back({"the embedding collapsed", "method", "default", false});
   else if (embedding.stop_reason == StopReason::IterationLimit)
     findings.push_back({"the embedding has not converged", "max_iterations",
                         std::to_string(moreIterations(options.paper.max_iterations)), false});
   else if (embedding.stop_reason == StopReason::Stagnated)
-    findings.push_back(
-        {"the embedding has not converged: its residual no longer falls", "", "", false});
+    findings.push_back({"the embedding has not converged: its residual no longer falls"});
 }
 
 }  // namespace
@@ -192,10 +190,9 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
   if (diagnosis.fills_volume)
-    findings.push_back({"the points fill a volume: they sample no surface", "", "", false});
+    findings.push_back({"the points fill a volume: they sample no surface"});
   else if (diagnosis.is_on_lines)
-    findings.push_back(
-        {"the points lie along lines, and the surface between these is a guess", "", "", false});
+    findings.push_back({"the points lie along lines, and the surface between these is a guess"});
   if (const std::optional<Finding> handles = handlesOf(result, given))
     findings.push_back(*handles);
   if (const std::optional<Finding> failed = failedHandlesOf(result))
@@ -217,8 +214,7 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   }
   addOfEmbedding(given, result, findings);
   if (result.is_out_of_time)
-    findings.push_back(
-        {"the time limit ended the work early: this is the best mesh so far", "", "", false});
+    findings.push_back({"the time limit ended the work early: this is the best mesh so far"});
   if (result.left_out_triangles > 0)
     findings.push_back({counted(result.left_out_triangles, "triangle") +
                             " that would intersect others, left out: small openings",
@@ -343,8 +339,7 @@ std::string LeftOut::text() const {
   std::string text;
   const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
     if (count > 0)
-      text +=
-          (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
+      text += (text.empty() ? "" : ", ") + internal::counted(count, one, many);
   };
   add(not_finite.size(), "point that is not finite", "points that are not finite");
   add(unused.size(), "point in no face", "points in no face");
