@@ -63,7 +63,9 @@ public:
       has_failed_ = has_failed_ || is_first;
       return best();
     }
-    const double doubtful = doubtfulSteps(glued->handles);
+    double doubtful = 0.0;  // length of the loops of handles that are not certain [steps]
+    for (const CutLoop& loop : glued->handles)
+      doubtful += loop.certainty < 1.0 ? static_cast<double>(loop.nodes.size()) : 0.0;
     if (doubtful == 0.0 || clock_.remaining() == 0.0) {
       cutter_.reset();
       return std::move(*glued);
@@ -118,14 +120,6 @@ public:
   bool hasFailed() const { return has_failed_; }
 
 private:
-  /// Length of the loops of handles that are not certain [steps].
-  static double doubtfulSteps(const std::vector<CutLoop>& handles) {
-    double steps = 0.0;
-    for (const CutLoop& loop : handles)
-      steps += loop.certainty < 1.0 ? static_cast<double>(loop.nodes.size()) : 0.0;
-    return steps;
-  }
-
   /// Whether the handles of a mesh that are not certain pay: it has less energy than one without
   /// them, when its edges are flipped or, if that does not decide, when it is optimised.
   ///
@@ -143,7 +137,7 @@ private:
     optimize(other);
     return energy(other.optimization->triangles) - energy(cut.optimization->triangles) >
                min_optimized * steps &&
-           !other.optimization->intersecting.areFewerThan(cut.optimization->intersecting);
+           !isBetter(other, cut);
   }
 
   Candidate sphere() {
@@ -260,9 +254,8 @@ MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceT
     // Over a possible opening the surface may be wrong.
     Options open = options;
     open.surface = SurfaceMode::Open;
-    clock.begin("openings");
     SurfaceTopology other =
-        findTopology(points, graph.graph, false, topology.openings.unit(), open, clock.execution());
+        findTopology(points, graph.graph, false, topology.openings.unit(), open, clock);
     Candidate with_openings = meshWithOpenings(points, graph.graph, other, open, clock, best);
     if (isBetter(with_openings, best)) {
       best = std::move(with_openings);

@@ -20,35 +20,34 @@ struct Piece {
 
 std::vector<Piece> piecesOf(const Graph& graph) {
   UnionFind sets = connectedComponents(graph);
-  const Indexed<Index> set = Partition(sets).of;
-  Indexed<Index> piece_of_set(graph.size(), -1);
+  const NeighborRows nodes = nodesOfParts(Partition(sets).of, graph.size());
   Indexed<Index> number(graph.size());  // of each node in its piece
-  Indexed<Piece> pieces;
-  for (const Index v : graph.nodes()) {
-    Index& piece = piece_of_set[set[v]];
-    if (piece < 0) {
-      piece = pieces.count();
-      pieces.emplace_back();
+  std::vector<Piece> pieces;
+  for (const Index set : nodes.nodes()) {
+    const Row<Index> of_set = nodes.row(set);
+    if (of_set.size() == 0)
+      continue;
+    Piece& piece = pieces.emplace_back();
+    for (const Index v : of_set) {
+      number[v] = piece.nodes.count();
+      piece.nodes.push_back(v);
     }
-    number[v] = pieces[piece].nodes.count();
-    pieces[piece].nodes.push_back(v);
-  }
-  for (Piece& piece : pieces)
-    for (const Index v : piece.nodes) {
+    for (const Index v : of_set) {
       for (const std::size_t e : graph.entries(v)) {
         piece.graph.neighbors.push_back(number[graph.neighbors[e]]);
         piece.graph.lengths.push_back(graph.lengths[e]);
       }
       piece.graph.endRow();
     }
-  return std::vector<Piece>(pieces.begin(), pieces.end());
+  }
+  return pieces;
 }
 
 /// The triangulated sphere of a piece, by the nodes of the whole graph; those in openings are left
 /// out.
 Triangles sphereOf(const Piece& piece, const FilledCut& all, const Options& options,
                    const Execution& execution, EmbeddingReport& report) {
-  const std::vector<Index> nodes(piece.nodes.begin(), piece.nodes.end());
+  const Indexed<Index>& nodes = piece.nodes;
   Embedding embedding = embed(piece.graph, all.filled.points(Eigen::all, nodes), options.embedding,
                               options.seed, execution);
   report = std::move(embedding.report);
@@ -56,7 +55,7 @@ Triangles sphereOf(const Piece& piece, const FilledCut& all, const Options& opti
   Triangles triangles =
       triangulateSphere(Positions(embedding.directions.leftCols(kept)), execution);
   for (Index& v : triangles.reshaped())
-    v = piece.nodes[v];
+    v = nodes[v];
   return triangles;
 }
 

@@ -3,7 +3,6 @@
 #include "face_mesh.h"
 #include "indexed.h"
 #include "intersection_removal.h"
-#include "spherical_param/self_intersection.h"
 
 #include <utility>
 #include <vector>

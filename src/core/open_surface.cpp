@@ -1,5 +1,6 @@
 #include "open_surface.h"
 
+#include "embedding_history.h"
 #include "filled_graph.h"
 
 #include <algorithm>
@@ -19,24 +20,11 @@ bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Opt
          opening.area * unit * unit <= options.fill_holes_area;
 }
 
-/// Leaves out the vertices from `count` on.
-void dropVertices(Index count, EmbeddingHistory& history) {
-  std::vector<Eigen::Index> kept;
-  std::vector<Index> vertices;
-  for (std::size_t i = 0; i < history.vertices.size(); ++i)
-    if (history.vertices[i] < count) {
-      kept.push_back(static_cast<Eigen::Index>(i));
-      vertices.push_back(history.vertices[i]);
-    }
-  history.vertices = std::move(vertices);
-  for (HistoryFrame& frame : history.frames)
-    frame.sphere = Positions(frame.sphere(Eigen::all, kept));
-}
-
 }  // namespace
 
 OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings found, bool is_flat,
-                         double unit, const Options& options) {
+                         double unit, const Options& options)
+    : unit_(unit) {
   Openings open;
   open.spacing = found.spacing;
   for (Opening& opening : found.openings) {
@@ -47,7 +35,6 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings f
   if (!open.openings.empty())
     places_.emplace(points, graph, open);
   embedded_ = std::move(found);
-  unit_ = unit;
 }
 
 bool OpenSurface::fillsPossible() const {
@@ -75,10 +62,6 @@ std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& gr
   return all;
 }
 
-bool seeksOpenings(const Options& options) {
-  return options.method == Method::Default;
-}
-
 Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, const Options& options,
                                 const Execution& execution) const {
   if (embedded_.openings.empty())
@@ -87,7 +70,7 @@ Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, con
   Embedding embedding =
       embed(filled.graph, filled.points, options.embedding, options.seed, execution);
   embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
-  dropVertices(static_cast<Index>(points.cols()), embedding.history);
+  keepVertices([&](Index node) { return node < points.cols(); }, embedding.history);
   return embedding;
 }
 

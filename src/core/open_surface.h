@@ -10,9 +10,6 @@
 
 namespace spherical_param::internal {
 
-/// Whether openings are sought: only the tangent Delaunay graph shows them.
-bool seeksOpenings(const Options& options);
-
 /// The openings of a cloud, and which of them the mesh leaves open.
 class OpenSurface {
 public:

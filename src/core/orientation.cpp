@@ -1,18 +1,13 @@
 #include "orientation.h"
 
+#include "corner_table.h"
 #include "exact_predicates.h"
-
-#include <Eigen/Geometry>
 
 #include <cmath>
 
 namespace spherical_param {
 namespace internal {
 namespace {
-
-double signOf(double x) {
-  return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
-}
 
 /// The mean over the area of a surface of what holds for a triangle, in [-1, 1].
 ///
@@ -21,13 +16,12 @@ template <typename Side>
 double meanOver(const Positions& points, const Triangles& surface, const Side& side) {
   double sum = 0.0;
   double area = 0.0;
-  for (const auto& corners : surface.colwise()) {
-    const Eigen::Vector3d a = points.col(corners[0]);
-    const Eigen::Vector3d normal = (points.col(corners[1]) - a).cross(points.col(corners[2]) - a);
+  for (Eigen::Index t = 0; t < surface.cols(); ++t) {
+    const Eigen::Vector3d normal = areaNormal(points, surface, t);
     const double twice = normal.norm();
     if (!(twice > 0.0))
       continue;
-    sum += twice * side(corners, normal / twice);
+    sum += twice * side(surface.col(t), normal / twice);
     area += twice;
   }
   return area > 0.0 ? sum / area : 0.0;
@@ -65,18 +59,15 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   constexpr double min_of_normals = 0.5;
   if (info.normals.cols() > 0) {
     const auto side = [&](const auto& corners, const Eigen::Vector3d& normal) {
-      return signOf(normal.dot(info.normals.col(corners[0]) + info.normals.col(corners[1]) +
-                               info.normals.col(corners[2])));
+      const double along = normal.dot(info.normals.col(corners[0]) + info.normals.col(corners[1]) +
+                                      info.normals.col(corners[2]));
+      return along > 0.0 ? 1.0 : along < 0.0 ? -1.0 : 0.0;
     };
     if (decides(meanOver(points, seen, side), min_of_normals))
       return FacedBy::Normals;
   }
-  if (!is_open) {
-    orientOutward(points, triangles, embedding);
-    return FacedBy::Outward;
-  }
   double seen_by_sensor = 0.0;
-  if (info.viewpoint)
+  if (is_open && info.viewpoint)
     seen_by_sensor =
         meanOver(points, seen, [&](const auto& corners, const Eigen::Vector3d& normal) {
           return normal.dot((*info.viewpoint - points.col(corners[0])).normalized());
@@ -88,8 +79,8 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   constexpr double min_hardly_seen = 0.05;
   if (decides(seen_by_sensor, min_seen))
     return FacedBy::Viewpoint;
-  if (decides(meanOver(points, seen, [](const auto&, const auto& normal) { return normal.z(); }),
-              min_up))
+  const auto up = [](const auto&, const Eigen::Vector3d& normal) { return normal.z(); };
+  if (is_open && decides(meanOver(points, seen, up), min_up))
     return FacedBy::Up;
   if (decides(seen_by_sensor, min_hardly_seen))
     return FacedBy::Viewpoint;

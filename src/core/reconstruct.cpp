@@ -18,7 +18,6 @@
 #include "selection.h"
 #include "smooth_fill.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/self_intersection.h"
 #include "stage_clock.h"
 #include "surface_topology.h"
 
@@ -31,15 +30,8 @@
 #include <utility>
 #include <vector>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 namespace {
-
-using internal::MeshedCloud;
-using internal::Neighborhoods;
-using internal::OpenSurface;
-using internal::Selection;
-using internal::StageClock;
-using internal::SurfaceTopology;
 
 /// Whether the mesh is a manifold with the boundary and the handles that are listed. Openings may
 /// divide it, and may take a handle.
@@ -54,7 +46,7 @@ bool isAsPromised(const Surface& surface) {
 
 /// Whether the mesh may have openings.
 bool mayBeOpen(const Options& options) {
-  return options.surface != SurfaceMode::Closed && internal::seeksOpenings(options);
+  return options.surface != SurfaceMode::Closed && options.method == Method::Default;
 }
 
 [[noreturn]] void refuseFlat(const Options& options) {
@@ -70,15 +62,14 @@ bool mayBeOpen(const Options& options) {
 NeighborGraph takeGraph(Neighborhoods& neighborhoods, const Options& options,
                         const Execution& execution) {
   if (options.method == Method::Paper)
-    return internal::paper::nearestNeighborGraph(neighborhoods.points(),
-                                                 neighborhoods.neighbors().lists, options.paper.k);
+    return paper::nearestNeighborGraph(neighborhoods.points(), neighborhoods.neighbors().lists,
+                                       options.paper.k);
   // Outliers that are left out are not looked for again.
   std::vector<StrayPoint> stray;
   if (options.outliers == OutlierMode::None)
-    stray = internal::strayPoints(neighborhoods.points(), neighborhoods.agreed(),
-                                  neighborhoods.stars());
-  NeighborGraph graph = internal::buildLocalDelaunayGraph(
-      neighborhoods.points(), neighborhoods.stars(), std::move(neighborhoods.agreed()), execution);
+    stray = strayPoints(neighborhoods.points(), neighborhoods.agreed(), neighborhoods.stars());
+  NeighborGraph graph = buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(),
+                                                std::move(neighborhoods.agreed()), execution);
   graph.stray_points = std::move(stray);
   return graph;
 }
@@ -90,20 +81,19 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   MeshedCloud mesh;
   mesh.graph = std::move(graph);
   clock.begin("embedding");
-  internal::EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
-  mesh.embedding = internal::paper::embed(mesh.graph.graph, points, options.paper,
-                                          options.embedding.tolerance.value_or(typical_tolerance),
-                                          recorder, clock.execution());
+  EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
+  mesh.embedding = paper::embed(mesh.graph.graph, points, options.paper,
+                                options.embedding.tolerance.value_or(typical_tolerance), recorder,
+                                clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
   Triangles& triangles = mesh.optimization.triangles;
-  triangles = internal::paper::convexHull(mesh.embedding.directions, clock.execution());
+  triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
   clock.noteMesh();
-  internal::orientOutward(points, triangles, mesh.embedding);
+  orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
   mesh.optimization.intersecting =
-      internal::findPairsUpTo(internal::mostOfUsable(internal::columnCount(triangles)), points,
-                              triangles, clock.execution());
+      findPairsUpTo(mostOfUsable(columnCount(triangles)), points, triangles, clock.execution());
   return mesh;
 }
 
@@ -113,31 +103,11 @@ void smooth(const Positions& points, const OpenSurface& openings, const Options&
   execution.time_limit = clock.remaining();
   clock.begin("smoothing");
   mesh.smoothed =
-      internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph, openings.places(),
-                           SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
-                           options.method == Method::Default, options.seed, execution);
+      smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph, openings.places(),
+                 SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
+                 options.method == Method::Default, options.seed, execution);
   bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
   is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
-}
-
-SurfaceTopology findTopology(const Positions& points, const Graph& graph, int exponent,
-                             bool is_flat, const Options& options, StageClock& clock) {
-  if (!internal::seeksOpenings(options))
-    return {};
-  clock.begin("openings");
-  return internal::findTopology(points, graph, is_flat, std::ldexp(1.0, exponent), options,
-                                clock.execution());
-}
-
-internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
-                              const OpenSurface& openings) {
-  Triangles& triangles = mesh.triangles();
-  if (openings.isOpen())
-    return openMesh(points, triangles, *openings.places());
-  internal::OpenMesh closed;
-  closed.is_open.resize(internal::columnCount(triangles), 0);
-  closed.triangles = std::move(triangles);
-  return closed;
 }
 
 /// Meshes a graph of points, and judges the mesh.
@@ -148,31 +118,27 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
   const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
-  MeshedCloud mesh =
-      options.method == Method::Paper
-          ? meshAsPublished(points, std::move(graph), options, clock)
-          : internal::meshByDefault(points, std::move(graph), topology, options, clock);
+  MeshedCloud mesh = options.method == Method::Paper
+                         ? meshAsPublished(points, std::move(graph), options, clock)
+                         : meshByDefault(points, std::move(graph), topology, options, clock);
   if (options.smoothing > 0)
     smooth(points, openings, options, clock, mesh);
   clock.begin("quality");
-  internal::OpenMesh open = openMeshOf(points, mesh, openings);
+  OpenMesh open;
+  if (openings.isOpen()) {
+    open = openMesh(points, mesh.triangles(), *openings.places());
+  } else {
+    open.triangles = std::move(mesh.triangles());
+    open.is_open.resize(columnCount(open.triangles), 0);
+  }
   const std::optional<std::size_t> left_out =
-      internal::cleanMesh(points, openings.isOpen(), options, clock.execution(), mesh, open);
-  const FacedBy faced_by = internal::orient(points, info, open, mesh.embedding);
-  Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), left_out.has_value(),
-                                    openings, options, clock.execution());
+      cleanMesh(points, openings.isOpen(), options, clock.execution(), mesh, open);
+  const FacedBy faced_by = orient(points, info, open, mesh.embedding);
+  Surface surface = judge(points, std::move(mesh), surfaceOf(open), left_out.has_value(), openings,
+                          options, clock.execution());
   surface.faced_by = faced_by;
   surface.left_out_triangles = left_out.value_or(0);
   return surface;
-}
-
-/// What is known of the nodes of a part. \param info of its points.
-CloudInfo infoOf(const internal::OrderedPoints& nodes, CloudInfo info) {
-  if (info.normals.cols() > 0)
-    info.normals = Positions(info.normals(Eigen::all, nodes.input_of_node));
-  if (info.viewpoint)
-    info.viewpoint = internal::timesPowerOfTwo(*info.viewpoint, -nodes.exponent);
-  return info;
 }
 
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
@@ -185,25 +151,34 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
       refuseFlat(options);
     NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
     neighborhoods.release();
-    internal::OrderedPoints& nodes = neighborhoods.nodes();
-    SurfaceTopology topology =
-        findTopology(nodes.points, graph.graph, nodes.exponent, is_flat, options, clock);
+    OrderedPoints& nodes = neighborhoods.nodes();
+    SurfaceTopology topology;
+    if (options.method == Method::Default)  // only the tangent Delaunay graph shows openings
+      topology = findTopology(nodes.points, graph.graph, is_flat, std::ldexp(1.0, nodes.exponent),
+                              options, clock);
     if (selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
       continue;
-    Surface surface = meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat,
-                                infoOf(nodes, selection.infoOf(part)), options, clock);
+    CloudInfo info = selection.infoOf(part);
+    if (info.normals.cols() > 0)
+      info.normals = Positions(info.normals(Eigen::all, nodes.input_of_node));
+    if (info.viewpoint)
+      info.viewpoint = timesPowerOfTwo(*info.viewpoint, -nodes.exponent);
+    Surface surface = meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat, info,
+                                options, clock);
     if (is_flat && surface.isClosed())
       refuseFlat(options);
-    internal::toInput(nodes, surface);
+    toInput(nodes, surface);
     return surface;
   }
 }
 
 /// Moves the points of a part to the surface that they sample, and meshes them.
-Surface meshConsolidated(const Positions& points, const CloudInfo& info, const Options& options,
+Surface meshConsolidated(Selection& all, std::size_t part, const Options& options,
                          StageClock& clock) {
+  all.release();
+  const CloudInfo info = all.infoOf(part);
   clock.begin("consolidation");
-  Consolidation consolidation = consolidate(points, clock.execution());
+  Consolidation consolidation = consolidate(all.pointsOf(part), clock.execution());
   CloudInfo merged;
   merged.viewpoint = info.viewpoint;
   if (info.normals.cols() > 0)
@@ -218,23 +193,19 @@ Surface meshConsolidated(const Positions& points, const CloudInfo& info, const O
   const NeighborSearchFactory by_tree;
   Selection selection(consolidation.points, as_is, by_tree, merged, clock, none);
   Surface surface = meshAsIs(selection, 0, options, clock);
-  internal::toInput(consolidation, surface);
+  toInput(consolidation, surface);
   return surface;
 }
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options, StageClock& clock,
                  LeftOut& left_out) {
-  if (options.consolidation == ConsolidationMode::Auto)
-    selection.release();
-  Surface surface =
-      options.consolidation == ConsolidationMode::Auto
-          ? meshConsolidated(selection.pointsOf(part), selection.infoOf(part), options, clock)
-          : meshAsIs(selection, part, options, clock);
+  auto* const mesh = options.consolidation == ConsolidationMode::Auto ? meshConsolidated : meshAsIs;
+  Surface surface = mesh(selection, part, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
         "as a defect of the library");
-  internal::toCloud(selection.parts()[part], surface, left_out.unmeshed);
+  toCloud(selection.parts()[part], surface, left_out.unmeshed);
   return surface;
 }
 
@@ -261,7 +232,7 @@ void dropTangles(Result& result, std::vector<Index>& failed) {
     return;
   surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_tangle), surfaces.end());
   result.failures.push_back(
-      internal::failureOf(tangles, dropped.size(), "more than 1 % of the triangles intersect"));
+      failureOf(tangles, dropped.size(), "more than 1 % of the triangles intersect"));
   failed.insert(failed.end(), dropped.begin(), dropped.end());
 }
 
@@ -289,14 +260,13 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
       const std::size_t before = failed.size();
       for (std::size_t i = part; i < end; ++i)
         failed.insert(failed.end(), parts[i].begin(), parts[i].end());
-      result.failures.push_back(
-          internal::failureOf(end - part, failed.size() - before, error.what()));
+      result.failures.push_back(failureOf(end - part, failed.size() - before, error.what()));
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
     } catch (const InvalidInput& error) {
       leave_out(error, part + 1);
-    } catch (const internal::OutOfTime& error) {
+    } catch (const OutOfTime& error) {
       leave_out(error, parts.size());
       break;
     } catch (const ComputeError& error) {
@@ -305,7 +275,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
-  if (internal::removesIntersections(options))
+  if (removesIntersections(options))
     dropTangles(result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
@@ -343,6 +313,9 @@ std::vector<std::vector<Index>> select(const Positions& points, Options options,
 }
 
 }  // namespace
+}  // namespace spherical_param::internal
+
+namespace spherical_param {
 
 Result reconstruct(const Positions& points, const Options& given,
                    const NeighborSearchFactory& search_of, const CloudInfo& info) {
@@ -351,11 +324,11 @@ Result reconstruct(const Positions& points, const Options& given,
     throw InvalidInput("reconstruct: " + std::to_string(info.normals.cols()) + " normals of " +
                        std::to_string(points.cols()) + " points; give one for each, or none");
   const Options options = withTopology(given);
-  StageClock clock(options);
+  internal::StageClock clock(options);
   Result result;
-  const std::size_t parts = explained(result.left_out, [&] {
-    Selection selection(points, given, search_of, info, clock, result.left_out);
-    meshParts(selection, options, clock, result);
+  const std::size_t parts = internal::explained(result.left_out, [&] {
+    internal::Selection selection(points, given, search_of, info, clock, result.left_out);
+    internal::meshParts(selection, options, clock, result);
     return selection.parts().size();
   });
   if (options.fill == FillMode::Smooth)
@@ -372,13 +345,13 @@ Result reconstruct(const Positions& points, const Options& given,
 
 std::vector<Index> findOutliers(const Positions& points, const Options& options) {
   LeftOut left_out;
-  select(points, options, PartsMode::All, left_out);
+  internal::select(points, options, PartsMode::All, left_out);
   return left_out.outliers;
 }
 
 std::vector<std::vector<Index>> findParts(const Positions& points, const Options& options) {
   LeftOut left_out;
-  return select(points, options, PartsMode::Each, left_out);
+  return internal::select(points, options, PartsMode::Each, left_out);
 }
 
 }  // namespace spherical_param

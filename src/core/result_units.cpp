@@ -1,10 +1,10 @@
 #include "result_units.h"
 
+#include "embedding_history.h"
 #include "power_of_two.h"
 #include "spherical_param/result_fields.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -54,13 +54,7 @@ void dropUnused(OrderedPoints& nodes, Surface& surface) {
   nodes.input_of_vertex = std::move(input_of_vertex);
   renumber(number, nodes.vertex_of_input);
   renumber(number, nodes.vertex_of_node);
-  std::vector<Eigen::Index> kept;
-  const std::vector<Index>& recorded = surface.history.vertices;
-  for (std::size_t i = 0; i < recorded.size(); ++i)
-    if (nodes.vertex_of_node[recorded[i]] >= 0)
-      kept.push_back(static_cast<Eigen::Index>(i));
-  for (HistoryFrame& frame : surface.history.frames)
-    frame.sphere = Positions(frame.sphere(Eigen::all, kept));
+  keepVertices([&](Index node) { return nodes.vertex_of_node[node] >= 0; }, surface.history);
 }
 
 /// Gives indices and arrays that were computed on nodes the numbers of the vertices.
@@ -76,9 +70,7 @@ struct Renumbering {
   }
 
   void operator()(const ResultField& field, Positions& columns) const {
-    if (field.kind != FieldKind::PerVertex)
-      return;
-    if (columns.cols() == 0)
+    if (field.kind != FieldKind::PerVertex || columns.cols() == 0)
       return;
     Positions of_vertices(3, static_cast<Eigen::Index>(vertices));
     for (Eigen::Index node = 0; node < columns.cols(); ++node)
@@ -88,9 +80,7 @@ struct Renumbering {
   }
 
   void operator()(const ResultField& field, std::vector<double>& values) const {
-    if (field.kind != FieldKind::PerVertex)
-      return;
-    if (values.empty())
+    if (field.kind != FieldKind::PerVertex || values.empty())
       return;
     Indexed<double> of_vertices(vertices);
     for (std::size_t node = 0; node < values.size(); ++node)

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -33,19 +32,26 @@ Selection::Selection(const Positions& points, const Options& given,
     (points.col(i).allFinite() ? inputs_ : left_out.not_finite).push_back(static_cast<Index>(i));
   inputs_ = without(inputs_, info.unused);
   left_out.not_finite = without(left_out.not_finite, info.unused);
-  if (options_.outliers != OutlierMode::None || options_.parts != PartsMode::All) {
-    clock.begin("neighbors");
-    cloud_ =
-        std::make_unique<Neighborhoods>(points, inputs_, options_, search_of, clock.execution());
-    clock.begin("graph");
-    cloud_->findStars(clock.execution());
-  }
+  if (options_.outliers != OutlierMode::None || options_.parts != PartsMode::All)
+    findNeighbors(inputs_).findStars(clock.execution());
   if (options_.outliers != OutlierMode::None)
     leaveOutOutliers();
   if (options_.parts == PartsMode::All)
     parts_.push_back(inputs_);
   else
     takeApart(given.parts == PartsMode::AsTopology);
+}
+
+Neighborhoods& Selection::findNeighbors(const std::vector<Index>& inputs) {
+  if (!cloud_ || !cloud_->areOf(inputs)) {
+    clock_.begin("neighbors");
+    // The caller's search is made once, among all points.
+    cloud_ = std::make_unique<Neighborhoods>(points_, inputs, options_,
+                                             cloud_ ? NeighborSearchFactory() : search_of_,
+                                             clock_.execution());
+  }
+  clock_.begin("graph");
+  return *cloud_;
 }
 
 void Selection::leaveOutOutliers() {
@@ -57,11 +63,7 @@ void Selection::leaveOutOutliers() {
   if (left_out_.outliers.empty())
     return;
   inputs_ = without(inputs_, left_out_.outliers);
-  clock_.begin("neighbors");
-  cloud_ = std::make_unique<Neighborhoods>(points_, inputs_, options_, NeighborSearchFactory(),
-                                           clock_.execution());
-  clock_.begin("graph");
-  cloud_->findStars(clock_.execution());
+  findNeighbors(inputs_).findStars(clock_.execution());
 }
 
 void Selection::takeApart(bool is_never_empty) {
@@ -106,17 +108,10 @@ CloudInfo Selection::infoOf(std::size_t part) const {
 }
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
-  if (!cloud_ || !cloud_->areOf(parts_[part])) {
-    clock_.begin("neighbors");
-    // The caller's search is made once, among all points.
-    cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_,
-                                             cloud_ ? NeighborSearchFactory() : search_of_,
-                                             clock_.execution());
-  }
-  clock_.begin("graph");
+  Neighborhoods& cloud = findNeighbors(parts_[part]);
   if (options_.method == Method::Default)
-    cloud_->findStars(clock_.execution());
-  return *cloud_;
+    cloud.findStars(clock_.execution());
+  return cloud;
 }
 
 bool Selection::complete(std::size_t part, const OrderedPoints& nodes,

@@ -43,6 +43,7 @@ public:
   bool complete(std::size_t part, const OrderedPoints& nodes, const std::vector<Opening>& openings);
 
 private:
+  Neighborhoods& findNeighbors(const std::vector<Index>& inputs);
   void leaveOutOutliers();
   void takeApart(bool is_never_empty);
 

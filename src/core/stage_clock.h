@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -33,7 +32,10 @@ public:
     execution_.threads = user.threads;
     if (user.progress || isLimited())
       execution_.progress = [this](const Progress& progress) {
-        checkTime();
+        // So that small clouds have a mesh whatever the limit [s].
+        constexpr double grace = 0.15;
+        if (isLimited() && !has_mesh_ && left_(-grace) == 0.0)
+          throw OutOfTime(*user_.time_limit);
         return !user_.progress || user_.progress({stage_, progress.fraction, part_, parts_});
       };
   }
@@ -98,13 +100,6 @@ private:
   using Clock = std::chrono::steady_clock;
 
   bool isLimited() const { return user_.time_limit && *user_.time_limit > 0.0; }
-
-  void checkTime() const {
-    // So that small clouds have a mesh whatever the limit [s].
-    constexpr double grace = 0.15;
-    if (isLimited() && !has_mesh_ && left_(-grace) == 0.0)
-      throw OutOfTime(*user_.time_limit);
-  }
 
   void end() {
     if (stage_ == nullptr)

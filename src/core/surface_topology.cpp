@@ -13,7 +13,9 @@
 namespace spherical_param::internal {
 
 SurfaceTopology findTopology(const Positions& points, const Graph& graph, bool is_flat, double unit,
-                             const Options& options, const Execution& execution) {
+                             const Options& options, StageClock& clock) {
+  clock.begin("openings");
+  const Execution& execution = clock.execution();
   const FractionReport report = reportOf(execution, "openings");
   const Indexed<double> spacing = nodeSpacings(graph, execution.threads);
   reportFraction(report, 0.1);
@@ -55,8 +57,20 @@ SurfaceCutter::SurfaceCutter(const Positions& points, const Graph& graph, Surfac
 }
 
 std::optional<SurfaceCut> SurfaceCutter::next() {
+  // As the measured squeeze is the predicted one to the power of 1.5 to 2, this is the range of
+  // double.
+  constexpr double max_squeeze = 15.0;
   while (next_ < handles_.size()) {
-    SurfaceCut cut = waysAlong(handles_[next_++]);
+    SurfaceCut cut;
+    cut.handles = std::move(handles_[next_++]);
+    const Necks necks = findNecks(points_, graph(), *rotation_, openings_, cut.handles);
+    cut.has_sphere = cut.handles.empty() && necks.squeeze <= max_squeeze;
+    if (!necks.loops.empty()) {
+      std::vector<CutLoop>& both = cut.loops.emplace_back(cut.handles);
+      both.insert(both.end(), necks.loops.begin(), necks.loops.end());
+    }
+    if (!cut.handles.empty())
+      cut.loops.push_back(cut.handles);
     if (!cut.loops.empty())
       return cut;
   }
@@ -65,23 +79,6 @@ std::optional<SurfaceCut> SurfaceCutter::next() {
 
 CutGraph SurfaceCutter::along(const std::vector<CutLoop>& loops) const {
   return cutAlong(points_, graph(), *rotation_, loops);
-}
-
-SurfaceCut SurfaceCutter::waysAlong(const std::vector<CutLoop>& handles) const {
-  SurfaceCut cut;
-  const Necks necks = findNecks(points_, graph(), *rotation_, openings_, handles);
-  // As the measured squeeze is the predicted one to the power of 1.5 to 2, this is the range of
-  // double.
-  constexpr double max_squeeze = 15.0;
-  cut.has_sphere = handles.empty() && necks.squeeze <= max_squeeze;
-  if (!necks.loops.empty()) {
-    cut.loops.push_back(handles);
-    cut.loops.back().insert(cut.loops.back().end(), necks.loops.begin(), necks.loops.end());
-  }
-  if (!handles.empty())
-    cut.loops.push_back(handles);
-  cut.handles = handles;
-  return cut;
 }
 
 }  // namespace spherical_param::internal

@@ -4,8 +4,8 @@
 #include "graph.h"
 #include "handles.h"
 #include "open_surface.h"
-#include "spherical_param/execution.h"
 #include "spherical_param/options.h"
+#include "stage_clock.h"
 
 #include <cstddef>
 #include <memory>
@@ -29,7 +29,7 @@ struct SurfaceTopology {
 /// \param is_flat  all points are in one plane: openings cannot be filled.
 /// \param unit     of the nodes' coordinates [unit of the input].
 SurfaceTopology findTopology(const Positions& points, const Graph& graph, bool is_flat, double unit,
-                             const Options& options, const Execution& execution);
+                             const Options& options, StageClock& clock);
 
 /// A way to cut a surface into spheres.
 struct SurfaceCut {
@@ -52,7 +52,6 @@ public:
   CutGraph along(const std::vector<CutLoop>& loops) const;
 
 private:
-  SurfaceCut waysAlong(const std::vector<CutLoop>& handles) const;
   const Graph& graph() const { return rest_ ? *rest_ : all_edges_; }
 
   const Positions& points_;

@@ -34,4 +34,19 @@ private:
   EmbeddingHistory history_;
 };
 
+/// Leaves out the recorded vertices for which keeps(vertex) is false.
+template <typename Keeps>
+void keepVertices(const Keeps& keeps, EmbeddingHistory& history) {
+  std::vector<Eigen::Index> places;
+  std::vector<Index> kept;
+  for (std::size_t i = 0; i < history.vertices.size(); ++i)
+    if (keeps(history.vertices[i])) {
+      places.push_back(static_cast<Eigen::Index>(i));
+      kept.push_back(history.vertices[i]);
+    }
+  history.vertices = std::move(kept);
+  for (HistoryFrame& frame : history.frames)
+    frame.sphere = Positions(frame.sphere(Eigen::all, places));
+}
+
 }  // namespace spherical_param::internal

@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

@@ -2,13 +2,10 @@
 
 #include "corner_table.h"
 #include "parallel.h"
-#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace spherical_param {
 namespace {

@@ -1,6 +1,5 @@
 #include "spherical_param/mesh_topology.h"
 
-#include "spherical_param/errors.h"
 #include "spherical_param/mesh_measures.h"
 
 #include "corner_table.h"
@@ -8,11 +7,8 @@
 #include "rows.h"
 #include "union_find.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include "indexed.h"
 #include "spherical_param/types.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "qhull.h"
 
 #include "spherical_param/errors.h"
-#include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 
 #include <libqhull_r/libqhull_r.h>

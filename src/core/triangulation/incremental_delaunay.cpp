@@ -8,8 +8,6 @@
 #include "sphere_mesh.h"
 #include "tangent_basis.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
