@@ -45,32 +45,22 @@ inline Graph unitGraph(Eigen::Index n, const std::vector<std::pair<Index, Index>
 
 /// The edges of triangles as a graph, with the lengths of the points.
 inline Graph graphOfMesh(const Positions& points, const Triangles& triangles) {
-  std::vector<std::pair<Index, Index>> edges;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      edges.emplace_back(triangles(k, t), triangles((k + 1) % 3, t));
-  Graph graph = unitGraph(points.cols(), edges);
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      graph.lengths[e] =
-          (points.col(static_cast<Index>(i)) - points.col(graph.neighbors[e])).norm();
+  Graph graph = unitGraph(points.cols(), sidesOf(triangles));
+  for (const Index v : graph.nodes())
+    for (const std::size_t e : graph.entries(v))
+      graph.lengths[e] = (points.col(v) - points.col(graph.neighbors[e])).norm();
   return graph;
 }
 
 /// Fraction of the edges of triangles that join nodes more than two steps apart in a graph.
 inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
   Index beyond = 0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index a = triangles(k, t);
-      const Index b = triangles((k + 1) % 3, t);
-      bool near = false;
-      for (const Index middle : rowOf(graph, a)) {
-        const std::vector<Index> next = rowOf(graph, middle);
-        near = near || middle == b || std::find(next.begin(), next.end(), b) != next.end();
-      }
-      beyond += near ? 0 : 1;
-    }
+  for (const auto& [a, b] : sidesOf(triangles)) {
+    bool near = false;
+    for (const Index middle : graph.row(a))
+      near = near || middle == b || graph.row(middle).contains(b);
+    beyond += near ? 0 : 1;
+  }
   return static_cast<double>(beyond) / static_cast<double>(3 * triangles.cols());
 }
 

@@ -40,37 +40,50 @@ inline Positions positionsOf(const std::vector<Eigen::Vector3d>& points) {
   return result;
 }
 
+/// The points place(0), ..., place(n - 1).
+template <typename Place>
+Positions pointsAt(Index n, const Place& place) {
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) = place(i);
+  return points;
+}
+
+/// The places (i, j) of a grid, row after row.
+template <typename Place>
+Positions gridOf(int rows, int columns, const Place& place) {
+  return pointsAt(rows * columns, [&](Index i) { return place(i / columns, i % columns); });
+}
+
+/// A point of the unit circle around the z axis, of some radius and height.
+inline Eigen::Vector3d onCircle(double angle, double radius = 1.0, double z = 0.0) {
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
 /// n points spread evenly over the unit sphere (golden-angle spiral).
 inline Positions spiralSphere(Index n) {
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i) {
+  return pointsAt(n, [=](Index i) {
     const double z = 1.0 - (2.0 * i + 1.0) / n;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double angle = kPi * (3.0 - std::sqrt(5.0)) * i;
-    points.col(i) << radius * std::cos(angle), radius * std::sin(angle), z;
-  }
-  return points;
+    return onCircle(kPi * (3.0 - std::sqrt(5.0)) * i, std::sqrt(1.0 - z * z), z);
+  });
 }
 
 /// n independent random points on the unit sphere.
 inline Positions randomSphere(Index n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
-  return points;
+  return pointsAt(n, [&](Index) {
+    return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  });
 }
 
 /// Random points in a cap of the given radius around a pole.
 inline Positions cap(Index n, double radius, const Eigen::Vector3d& pole, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-radius, radius);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) =
-        (pole + Eigen::Vector3d(uniform(random), uniform(random), uniform(random))).normalized();
-  return points;
+  return pointsAt(n, [&](Index) {
+    return (pole + Eigen::Vector3d(uniform(random), uniform(random), uniform(random))).normalized();
+  });
 }
 
 /// n independent random points in the cube [-1, 1]^3.
@@ -80,14 +93,22 @@ inline Positions randomCube(Index n, std::uint64_t seed) {
   return Positions::NullaryExpr(3, n, [&] { return uniform(random); });
 }
 
+/// The integer points of a box from the origin on.
+inline std::vector<Eigen::Vector3i> latticeOf(const Eigen::Vector3i& size) {
+  std::vector<Eigen::Vector3i> points;
+  for (int i = 0; i < size.x(); ++i)
+    for (int j = 0; j < size.y(); ++j)
+      for (int k = 0; k < size.z(); ++k)
+        points.emplace_back(i, j, k);
+  return points;
+}
+
 /// The m^3 - (m - 2)^3 grid points on the surface of the cube [0, 1]^3: full of ties.
 inline Positions cubeGrid(int m) {
   std::vector<Eigen::Vector3d> points;
-  for (int x = 0; x < m; ++x)
-    for (int y = 0; y < m; ++y)
-      for (int z = 0; z < m; ++z)
-        if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == m - 1)
-          points.emplace_back(Eigen::Vector3d(x, y, z) / (m - 1));
+  for (const Eigen::Vector3i& p : latticeOf({m, m, m}))
+    if (p.minCoeff() == 0 || p.maxCoeff() == m - 1)
+      points.emplace_back(p.cast<double>() / (m - 1));
   return positionsOf(points);
 }
 
@@ -115,16 +136,6 @@ inline Positions movedTo(double x, const Positions& points) {
   return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
 }
 
-/// The places (i, j) of a grid, row after row.
-template <typename Place>
-Positions gridOf(int rows, int columns, const Place& place) {
-  Positions points(3, rows * columns);
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j)
-      points.col(i * columns + j) = place(i, j);
-  return points;
-}
-
 /// The numbers from `begin` to `end`.
 inline std::vector<Index> range(Eigen::Index begin, Eigen::Index end) {
   std::vector<Index> result(static_cast<std::size_t>(end - begin));
@@ -150,6 +161,15 @@ inline std::vector<Index> rowOf(const NeighborLists& lists, Index i) {
   return rowOf(lists.offsets, lists.indices, i);
 }
 
+/// The sides of triangles, from each corner to the next.
+inline std::vector<std::pair<Index, Index>> sidesOf(const Triangles& triangles) {
+  std::vector<std::pair<Index, Index>> sides;
+  for (const auto& t : triangles.colwise())
+    for (int k = 0; k < 3; ++k)
+      sides.emplace_back(t[k], t[(k + 1) % 3]);
+  return sides;
+}
+
 /// The k nearest other points of each point, by brute force; ties by index.
 inline NeighborLists bruteForceNeighbors(const Positions& points, int k) {
   NeighborLists lists;
@@ -169,35 +189,26 @@ inline NeighborLists bruteForceNeighbors(const Positions& points, int k) {
   return lists;
 }
 
-/// Answers from all pairs of points, which must outlive it.
-inline auto bruteForceSearch(const Positions& points) {
-  return [&points](const std::vector<Index>& queries, int count) {
-    const NeighborLists all = bruteForceNeighbors(points, count);
-    NeighborLists answer;
-    for (const Index query : queries) {
-      const std::vector<Index> nearest = rowOf(all, query);
-      answer.indices.insert(answer.indices.end(), nearest.begin(), nearest.end());
-      answer.offsets.push_back(answer.indices.size());
-    }
-    return answer;
-  };
-}
-
 /// Makes a search by brute force among some of the points, which must outlive it.
 inline NeighborSearchFactory bruteForceFactory(const Positions& points) {
   return [&points](const std::vector<Index>& some) -> NeighborSearch {
     return [&points, some](const std::vector<Index>& queries, int count) {
-      const Positions of_some = points(Eigen::all, some);
-      std::vector<Index> places;
-      for (const Index query : queries)
-        places.push_back(
-            static_cast<Index>(std::lower_bound(some.begin(), some.end(), query) - some.begin()));
-      NeighborLists lists = bruteForceSearch(of_some)(places, count);
-      for (Index& entry : lists.indices)
-        entry = some[static_cast<std::size_t>(entry)];
-      return lists;
+      const NeighborLists all = bruteForceNeighbors(points(Eigen::all, some), count);
+      NeighborLists answer;
+      for (const Index query : queries) {
+        const auto place = std::lower_bound(some.begin(), some.end(), query) - some.begin();
+        for (const Index near : rowOf(all, static_cast<Index>(place)))
+          answer.indices.push_back(some[static_cast<std::size_t>(near)]);
+        answer.offsets.push_back(answer.indices.size());
+      }
+      return answer;
     };
   };
+}
+
+/// The same among all of them.
+inline NeighborSearch bruteForceSearch(const Positions& points) {
+  return bruteForceFactory(points)(range(0, points.cols()));
 }
 
 /// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold surface in
@@ -212,43 +223,35 @@ inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus) {
       if (a == b || a < 0 || a >= n || !third.insert({{a, b}, triangles((k + 2) % 3, t)}).second)
         return false;
     }
-  std::vector<Index> first_out(static_cast<std::size_t>(n), -1);
-  std::vector<Index> degree(static_cast<std::size_t>(n), 0);
-  for (const auto& [edge, apex] : third) {
+  for (const auto& [edge, apex] : third)
     if (third.count({edge.second, edge.first}) == 0)
       return false;
-    first_out[static_cast<std::size_t>(edge.first)] = edge.second;
-    ++degree[static_cast<std::size_t>(edge.first)];
-  }
   for (Index v = 0; v < n; ++v) {
-    const Index first = first_out[static_cast<std::size_t>(v)];
-    if (first < 0)
+    const auto first = third.lower_bound({v, 0});
+    const auto degree = std::distance(first, third.lower_bound({v + 1, 0}));
+    if (degree == 0)
       return false;
-    Index around = first;
-    Index steps = 0;
+    std::ptrdiff_t steps = 0;
+    Index around = first->first.second;
     do {
       around = third.at({v, around});
       ++steps;
-    } while (around != first && steps <= n);
-    if (steps != degree[static_cast<std::size_t>(v)])
+    } while (around != first->first.second && steps <= degree);
+    if (steps != degree)
       return false;
   }
-  std::vector<Index> piece = range(0, n);
-  const auto root = [&](Index v) {
-    while (piece[static_cast<std::size_t>(v)] != v)
-      v = piece[static_cast<std::size_t>(v)];
-    return v;
-  };
-  for (const auto& [edge, apex] : third) {
-    const Index a = root(edge.first);
-    const Index b = root(edge.second);
-    piece[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  std::set<Index> piece{0};
+  std::vector<Index> todo{0};
+  while (!todo.empty()) {
+    const Index v = todo.back();
+    todo.pop_back();
+    for (auto at = third.lower_bound({v, 0}); at != third.end() && at->first.first == v; ++at)
+      if (piece.insert(at->first.second).second)
+        todo.push_back(at->first.second);
   }
-  for (Index v = 0; v < n; ++v)
-    if (root(v) != 0)
-      return false;
-  return n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) ==
-         2 - 2 * genus;
+  return static_cast<Index>(piece.size()) == n &&
+         n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) ==
+             2 - 2 * genus;
 }
 
 /// Whether they are a sphere.
@@ -267,13 +270,6 @@ inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
   }
   std::sort(result.begin(), result.end());
   return result;
-}
-
-/// Execution on so many threads.
-inline Execution onThreads(int threads) {
-  Execution execution;
-  execution.threads = threads;
-  return execution;
 }
 
 /// Whether there are some, all in [0, 1].
@@ -298,12 +294,8 @@ auto runTogether(std::size_t count, const Run& run) {
 /// Signed volume, by plain summation of determinants.
 inline double volumeOf(const Positions& points, const Triangles& triangles) {
   double sum = 0.0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    Eigen::Matrix3d corners;
-    for (int k = 0; k < 3; ++k)
-      corners.col(k) = points.col(triangles(k, t));
-    sum += corners.determinant();
-  }
+  for (const auto& corners : triangles.colwise())
+    sum += Eigen::Matrix3d(points(Eigen::all, corners)).determinant();
   return sum / 6.0;
 }
 
@@ -334,10 +326,9 @@ inline Mesh bentTube(double length, double turn, int ring) {
     return Eigen::Vector3d(
         center + across * (std::cos(angle) * normal + std::sin(angle) * Eigen::Vector3d::UnitZ()));
   };
-  for (int r = 0; r < rings; ++r)
-    for (int k = 0; k < ring; ++k)
-      tube.points.col(r * ring + k) =
-          place(length * r / (rings - 1), 1.0, spacing * (k + (r % 2) * 0.5));
+  tube.points.leftCols(rings * ring) = gridOf(rings, ring, [&](int r, int k) {
+    return place(length * r / (rings - 1), 1.0, spacing * (k + (r % 2) * 0.5));
+  });
   // Caps: one point a little beyond each end.
   tube.points.col(n - 2) = place(-0.3, 0.0, 0.0);
   tube.points.col(n - 1) = place(length + 0.3, 0.0, 0.0);
@@ -358,6 +349,11 @@ inline Mesh bentTube(double length, double turn, int ring) {
     tube.triangles.col(t++) << n - 1, (rings - 1) * ring + k, (rings - 1) * ring + (k + 1) % ring;
   }
   return tube;
+}
+
+/// Of the vertices from `first` on.
+inline Triangles tetrahedron(Index first = 0) {
+  return Triangles{{0, 0, 1, 2}, {2, 1, 2, 0}, {1, 3, 3, 3}}.array() + first;
 }
 
 /// A torus of rings x around quads, each split in two, over the vertices r * around + k: six

@@ -32,10 +32,8 @@ inline Positions hemisphere(Index n) {
 /// A tube of radius 1 without ends: rings of points, each turned by half a step.
 inline Positions tube(int rings, int around) {
   const double step = 2.0 * kPi / around;
-  return gridOf(rings, around, [=](int r, int a) {
-    const double angle = step * (a + 0.5 * r);
-    return Eigen::Vector3d(std::cos(angle), std::sin(angle), step * r);
-  });
+  return gridOf(rings, around,
+                [=](int r, int a) { return onCircle(step * (a + 0.5 * r), 1.0, step * r); });
 }
 
 /// Random points of the square [0, side]^2 at z = 0, a unit apart.
@@ -58,10 +56,8 @@ inline Positions patchOf(int columns, int rows) {
 /// The boundary of a mesh, found edge by edge from the triangles alone: each vertex on it and the
 /// next one, with the surface on the left. A vertex that is twice on it has -2.
 inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {
-  std::set<std::pair<Index, Index>> sides;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      sides.emplace(triangles(k, t), triangles((k + 1) % 3, t));
+  const std::vector<std::pair<Index, Index>> all = sidesOf(triangles);
+  const std::set<std::pair<Index, Index>> sides(all.begin(), all.end());
   std::map<Index, Index> next;
   for (const auto& [v, w] : sides)
     if (sides.count({w, v}) == 0)
@@ -71,15 +67,13 @@ inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {
 
 /// A field of 18 x 18 points, of which 3 x 3 each are 0, 2.5 or 5 high, without walls.
 inline Positions terraces() {
-  Positions points(3, 324);
-  for (Index i = 0; i < 324; ++i) {
-    const double x = i % 18 + 0.5 * (i / 18 % 2);
-    const double y = std::sqrt(0.75) * (i / 18);
+  return gridOf(18, 18, [](int i, int j) {
+    const double x = j + 0.5 * (i % 2);
+    const double y = std::sqrt(0.75) * i;
     const int column = std::min(static_cast<int>(x / 3.0), 5);
     const int row = static_cast<int>(y / 3.0);
-    points.col(i) << x, y, 2.5 * ((column * column + 2 * row * row + column * row) % 3);
-  }
-  return points;
+    return Eigen::Vector3d(x, y, 2.5 * ((column * column + 2 * row * row + column * row) % 3));
+  });
 }
 
 }  // namespace spherical_param::test

@@ -11,6 +11,7 @@
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/result_fields.h"
 
 #include <iterator>
 #include <type_traits>
@@ -28,7 +29,7 @@ public:
 
   template <typename Value>
   void add(const Value& value) {
-    if constexpr (std::is_arithmetic_v<Value>)
+    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
       numbers_.push_back(static_cast<double>(value));
     else if constexpr (std::is_base_of_v<Eigen::DenseBase<Value>, Value>)
       for (const auto number : value.reshaped())
@@ -37,9 +38,12 @@ public:
       for (const auto& part : value)
         add(part);
   }
+  template <typename Value>
+  void add(const std::optional<Value>& value) {
+    add(value.has_value());
+    add(value.value_or(0));
+  }
   std::size_t size() const { return numbers_.size(); }
-  auto begin() const { return numbers_.begin(); }
-  auto end() const { return numbers_.end(); }
   bool operator==(const Numbers& other) const { return numbers_ == other.numbers_; }
 
 private:
@@ -88,21 +92,11 @@ Options with(Options options, const Execution& execution) {
 }
 
 Numbers numbersOf(const Result& result) {
-  Numbers numbers(result.left_out.outliers, result.left_out.other_parts);
-  for (const Surface& surface : result.surfaces) {
-    numbers.add(Numbers(surface.inputs, surface.triangles, surface.sphere, surface.smoothed,
-                        surface.consolidated, surface.filled, surface.boundary,
-                        surface.self_intersections, surface.measures.inertia, surface.outliers,
-                        surface.embedding.residuals, surface.vertex_residuals,
-                        surface.diagnosis.triangle_marks, surface.diagnosis.edges_outside_graph,
-                        surface.history.vertices, surface.smoothing.volume_after));
-    for (const HistoryFrame& frame : surface.history.frames)
-      numbers.add(frame.sphere);
-    for (const Opening& opening : surface.openings)
-      numbers.add(Numbers(opening.loop, opening.area));
-    for (const HandleLoop& handle : surface.handles)
-      numbers.add(handle.loop);
-  }
+  Numbers numbers;
+  const auto add = [&](const ResultField&, const auto& value) { numbers.add(value); };
+  visitValues(result.left_out, add);
+  for (const Surface& surface : result.surfaces)
+    visitValues(surface, add);
   return numbers;
 }
 
@@ -232,13 +226,12 @@ TEST(Contract, ThreadsAndReportsChangeNoBit) {
   const Inputs inputs(20000);
   for (const auto& [name, run, last_fraction] : allFunctions()) {
     SCOPED_TRACE(name);
-    const Numbers alone = run(inputs, onThreads(1));
+    const Numbers alone = run(inputs, Execution{1});
     EXPECT_GT(alone.size(), 0U);
-    EXPECT_TRUE(alone == run(inputs, onThreads(2)));
+    EXPECT_TRUE(alone == run(inputs, Execution{2}));
     Watch watch;
-    Execution execution = onThreads(5);
-    execution.progress = [&](const Progress& progress) { return watch.see(progress); };
-    EXPECT_TRUE(alone == run(inputs, execution));
+    const auto see = [&](const Progress& progress) { return watch.see(progress); };
+    EXPECT_TRUE(alone == run(inputs, Execution{5, see}));
     EXPECT_TRUE(watch.is_from_caller);
     EXPECT_EQ(areFractions(watch.fractions), last_fraction.has_value());
     EXPECT_TRUE(!last_fraction || watch.fractions.back() == *last_fraction);
@@ -283,9 +276,9 @@ void expectTheSameTogether(const std::vector<Function>& functions,
                            const std::vector<Inputs>& inputs, int threads) {
   for (const Function& function : functions) {
     const auto together = runTogether(
-        inputs.size(), [&](std::size_t i) { return function.run(inputs[i], onThreads(threads)); });
+        inputs.size(), [&](std::size_t i) { return function.run(inputs[i], Execution{threads}); });
     for (std::size_t i = 0; i < inputs.size(); ++i)
-      EXPECT_TRUE(together[i] == function.run(inputs[i], onThreads(1)))
+      EXPECT_TRUE(together[i] == function.run(inputs[i], Execution{1}))
           << function.name << " " << i;
   }
 }

@@ -64,11 +64,11 @@ TEST(Refusals, OfFunctionsThatTakeAMeshAreForIndicesAndThreads) {
        true},
       {[](const auto& p, const auto& t, int threads) { measureMesh(p, t, threads); }, true},
       {[](const auto& p, const auto& t, int threads) {
-         findSelfIntersections(p, t, onThreads(threads));
+         findSelfIntersections(p, t, Execution{threads});
        },
        true},
       {[](const auto& p, const auto& t, int threads) {
-         findSelfIntersectionsOf(p, t, {0}, onThreads(threads));
+         findSelfIntersectionsOf(p, t, {0}, Execution{threads});
        },
        true},
       {[](const auto& p, const auto& t, int) { areaWeightedNormals(p, t); }, false},
@@ -265,10 +265,9 @@ TEST(Refusals, OfTexturesAndMorphsThatDoNotFit) {
 }
 
 /// Sets an option to values that are taken and to values that are refused by its name.
-template <typename Options, typename Base, typename Member>
-void expectRange(const std::string& name, Options options, Member Base::*member,
-                 const std::function<void(const Options&)>& use, const std::vector<double>& good,
-                 const std::vector<double>& bad) {
+template <typename Options, typename Base, typename Member, typename Use>
+void expectRange(const std::string& name, Options options, Member Base::*member, const Use& use,
+                 const std::vector<double>& good, const std::vector<double>& bad) {
   const auto refusal = [&](double value) {
     if constexpr (std::is_enum_v<Member>)
       options.*member = static_cast<Member>(static_cast<int>(value));
@@ -291,21 +290,17 @@ TEST(Refusals, OfOptionsNameThemAndEndsOfTheRangesAreTaken) {
                       : randomSphere(n, 7));
     const SphereSurface surface = mesh.surface();
     const TextureAtlas atlas = makeTextureAtlas(mesh.triangles, mesh.sphere);
-    const std::function<void(const SphereMapOptions&)> map = [&](const SphereMapOptions& o) {
+    const auto map = [&](const SphereMapOptions& o) {
       computeSphereMap(mesh.points, mesh.triangles, mesh.sphere, o);
     };
-    const std::function<void(const SphereSurfaceOptions&)> fit =
-        [&](const SphereSurfaceOptions& o) {
-          SphereSurface(mesh.points, mesh.triangles, mesh.sphere, o);
-        };
-    const std::function<void(const MorphOptions&)> morph = [&](const MorphOptions& o) {
-      morphSurfaces(surface, surface, o);
+    const auto fit = [&](const SphereSurfaceOptions& o) {
+      SphereSurface(mesh.points, mesh.triangles, mesh.sphere, o);
     };
-    const std::function<void(const TextureAtlasOptions&)> lay_out =
-        [&](const TextureAtlasOptions& o) { makeTextureAtlas(mesh.triangles, mesh.sphere, o); };
-    const std::function<void(const BakeOptions&)> bake = [&](const BakeOptions& o) {
-      bakeCheckerboard(atlas, mesh.sphere, 8, o);
+    const auto morph = [&](const MorphOptions& o) { morphSurfaces(surface, surface, o); };
+    const auto lay_out = [&](const TextureAtlasOptions& o) {
+      makeTextureAtlas(mesh.triangles, mesh.sphere, o);
     };
+    const auto bake = [&](const BakeOptions& o) { bakeCheckerboard(atlas, mesh.sphere, 8, o); };
     SphereMapOptions few;
     few.sweeps = 2;
     MorphOptions plain;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "open_shapes.h"
+#include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
@@ -16,13 +17,19 @@ inline Positions ellipsoid(Index n) {
 
 /// A sphere with noise of so many distances of its points.
 inline Positions noisySphere(Index n, double noise) {
-  const double spacing = std::sqrt(8.0 * kPi / (std::sqrt(3.0) * n));
-  return withNoise(spiralSphere(n), noise * spacing, 7);
+  return withNoise(spiralSphere(n), noise * sphereSpacing(n), 7);
 }
 
 /// Two spheres with a gap between them.
 inline Positions twoSpheres(Index n, Index m, double distance) {
   return horizontally(spiralSphere(n), movedTo(distance, spiralSphere(m)));
+}
+
+/// The same cloud several times, side by side along x.
+inline Positions inARow(int count, double distance, const Positions& cloud) {
+  return gridOf(count, static_cast<int>(cloud.cols()), [&](int i, int j) {
+    return Eigen::Vector3d(cloud.col(j) + distance * i * Eigen::Vector3d::UnitX());
+  });
 }
 
 /// Options by the names that the tools have for them: given("surface", "open", "smoothing", 3).
@@ -84,10 +91,7 @@ inline Surface mesh(const Positions& points, const Options& options = {}) {
 }
 
 inline Positions verticesOf(const Positions& points, const Surface& result) {
-  Positions vertices(3, static_cast<Eigen::Index>(result.vertexCount()));
-  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
-    vertices.col(v) = points.col(result.input_of_vertex[static_cast<std::size_t>(v)]);
-  return vertices;
+  return points(Eigen::all, result.input_of_vertex);
 }
 
 inline bool isFound(const Surface& result, const std::string& text) {

@@ -1,56 +1,36 @@
 #include "handle_shapes.h"
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/option_table.h"
 
 namespace spherical_param::test {
 namespace {
 
-/// Points of a grid, where a function is not negative.
-template <typename Inside>
-Positions latticeWhere(int side, const Inside& inside) {
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < side * side * side; ++i) {
-    const Eigen::Vector3d p(i % side, i / side % side, i / side / side);
-    if (inside(p))
-      points.push_back(p);
-  }
-  return positionsOf(points);
+Positions elevationModel(int side) {
+  return gridOf(side, side, [](int y, int x) {
+    return Eigen::Vector3d(x, y, std::sin(7.0 * x * x + 3.0 * y));
+  });
 }
 
-Positions elevationModel(int side) {
-  Positions points = latticeWhere(side, [](const auto& p) { return p.z() == 0.0; });
-  for (auto point : points.colwise())
-    point.z() = std::sin(7.0 * point.x() * point.x() + 3.0 * point.y());
-  return points;
+Positions ballOfGrid() {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3i& p : latticeOf({11, 11, 11}))
+    if ((p.array() - 5).matrix().squaredNorm() <= 26)
+      points.emplace_back(p.cast<double>());
+  return positionsOf(points);
 }
 
 /// A capped tube by rings, `ratio` times as far apart as the points on them.
 Positions contours(double ratio, int rings) {
-  constexpr int around = 120;
-  std::vector<Eigen::Vector3d> points;
-  for (int ring = 0; ring < rings; ++ring)
-    for (int i = 0; i < around; ++i) {
-      const double angle = 2.0 * kPi * (i + 0.5 * (ring % 2)) / around;
-      points.emplace_back(std::cos(angle), std::sin(angle), ratio * 2.0 * kPi / around * ring);
-    }
-  return positionsOf(points);
+  const double step = 2.0 * kPi / 120;
+  return gridOf(rings, 120, [=](int ring, int i) {
+    return onCircle(step * (i + 0.5 * (ring % 2)), 1.0, ratio * step * ring);
+  });
 }
 
 const std::map<std::string, Positions>& clouds() {
-  static const auto ball = [](const Eigen::Vector3d& p) {
-    return (p - Eigen::Vector3d::Constant(5.0)).norm() <= 5.1;
-  };
   static const std::map<std::string, Positions> all = {
       {"whole", ellipsoid(800)},
       {"two", twoSpheres(400, 300, 6.0)},
-      {"eight",
-       [] {
-         Positions cloud(3, 0);
-         for (int i = 0; i < 8; ++i)
-           cloud = horizontally(cloud, movedTo(3.0 * i, spiralSphere(200)));
-         return cloud;
-       }()},
+      {"eight", inARow(8, 3.0, spiralSphere(200))},
       {"two too small", twoSpheres(30, 30, 6.0)},
       {"bowl", hemisphere(800)},
       {"holes", sphereWithHoles(1500, 3, 0.4)},
@@ -64,7 +44,7 @@ const std::map<std::string, Positions>& clouds() {
       {"very noisy", noisySphere(1500, 1.7)},
       {"corners", cubeGrid(2)},
       {"elevations", elevationModel(10)},
-      {"volume", latticeWhere(11, ball)},
+      {"volume", ballOfGrid()},
       {"contours", contours(5.0, 12)},
       {"rings far apart", contours(20.0, 6)}};
   return all;

@@ -1,14 +1,8 @@
 #include "findings.h"
 
-#include "spherical_param/reconstruct.h"
+#include "reconstructions.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <string>
-#include <vector>
-
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
 
 constexpr std::size_t kPoints = 1000;
@@ -47,7 +41,7 @@ void expectFindings(const std::vector<Case>& cases, const Options& options = {})
     SCOPED_TRACE(expected.text);
     Surface result = soundResult();
     change(result);
-    const std::vector<Finding> findings = internal::findingsOf(options, result);
+    const std::vector<Finding> findings = findingsOf(options, result);
     ASSERT_EQ(findings.size(), expected.text.empty() ? 0U : 1U);
     if (!findings.empty()) {
       EXPECT_EQ(findings[0].text, expected.text);
@@ -111,7 +105,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       {{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud", "", "",
         true},
        [](Surface& r) { r.diagnosis.edges_outside_graph = 0.12; }},
-      {{"the time limit ended the work early: this is the best mesh so far", "", "", false},
+      {{"the time limit ended the work early: this is the best mesh so far"},
        [](Surface& r) { r.is_out_of_time = true; }},
       {{"self-intersections", "", "", true}, [](Surface& r) { r.intersecting_triangles = 2; }},
   });
@@ -121,18 +115,18 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
   Surface result = soundResult();
   result.is_noisy = true;
   result.diagnosis.edges_outside_graph = 0.12;
-  ASSERT_EQ(internal::findingsOf({}, result).size(), 1U);
-  EXPECT_EQ(internal::findingsOf({}, result)[0].option, "consolidation");
+  ASSERT_EQ(findingsOf({}, result).size(), 1U);
+  EXPECT_EQ(findingsOf({}, result)[0].option, "consolidation");
   result.outliers = {3};
-  EXPECT_TRUE(internal::findingsOf({}, result).back().option.empty());
+  EXPECT_TRUE(findingsOf({}, result).back().option.empty());
 }
 
 TEST(Findings, AFaultWithoutAnOptionBesideOneThatHasOneIsAConsequence) {
   Surface result = soundResult();
   result.intersecting_triangles = 2;
-  EXPECT_FALSE(internal::findingsOf({}, result).back().is_consequence);
+  EXPECT_FALSE(findingsOf({}, result).back().is_consequence);
   result.outliers = {3};
-  const std::vector<Finding> findings = internal::findingsOf({}, result);
+  const std::vector<Finding> findings = findingsOf({}, result);
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_FALSE(findings[0].is_consequence);
   EXPECT_TRUE(findings[1].is_consequence);
@@ -143,10 +137,10 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   result.surfaces.resize(3, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[2].findings = {{"noisy", "consolidation", "auto", false}, {"torn", "", "", true}};
-  EXPECT_EQ(internal::failureOf(1, 1200, "reconstruct: it is flat"),
+  EXPECT_EQ(failureOf(1, 1200, "reconstruct: it is flat"),
             "1 part (1,200 points) cannot be meshed: it is flat");
-  EXPECT_EQ(internal::failureOf(2, 1200, "slow"), "2 parts (1,200 points) cannot be meshed: slow");
-  internal::summarize(4, result);
+  EXPECT_EQ(failureOf(2, 1200, "slow"), "2 parts (1,200 points) cannot be meshed: slow");
+  summarize(4, result);
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     texts.push_back(finding.text);
@@ -156,7 +150,7 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[0].verdict = "Fine.";
-  internal::summarize(1, result);
+  summarize(1, result);
   EXPECT_EQ(result.findings[0].text + " " + result.verdict, "noisy Fine.");
 }
 
@@ -172,18 +166,12 @@ TEST(LeftOut, SaysWhatAndHowMany) {
 }
 
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
-  Options filling;
-  filling.surface = SurfaceMode::Open;
-  filling.fill_holes = 500;
-  expectFindings({{{"opening of 432 points, filled", "", "", false},
-                   [](Surface& r) { r.openings = {filledOpening(432)}; }}},
-                 filling);
+  expectFindings(
+      {{{"opening of 432 points, filled"}, [](Surface& r) { r.openings = {filledOpening(432)}; }}},
+      given("surface", "open", "fill_holes", 500));
 }
 
 TEST(Findings, ThePapersMethodHasItsOwn) {
-  Options options;
-  options.method = Method::Paper;
-  options.paper.max_iterations = 40;
   const std::string folded =
       "the mesh is folded: 0.2 % of its edges join points that are far apart in the cloud";
   expectFindings({{{folded, "method", "default", true},
@@ -193,17 +181,16 @@ TEST(Findings, ThePapersMethodHasItsOwn) {
                    [](Surface& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
                   {{"the embedding collapsed", "method", "default", false},
                    [](Surface& r) { r.embedding.stop_reason = StopReason::Collapsed; }}},
-                 options);
-  expectFindings({{{"the embedding has not converged: its residual no longer falls", "", "", false},
-                   [](Surface& r) { r.embedding.stop_reason = StopReason::Stagnated; }}},
-                 Options());
+                 given(paper(), "max_iterations", 40));
+  expectFindings({{{"the embedding has not converged: its residual no longer falls"},
+                   [](Surface& r) { r.embedding.stop_reason = StopReason::Stagnated; }}});
 }
 
 TEST(Verdict, SaysInProportionWhatIsWrong) {
   const auto expect = [](const std::string& verdict, const std::function<void(Surface&)>& change) {
     Surface result = soundResult();
     change(result);
-    EXPECT_EQ(internal::verdictOf({}, result), verdict);
+    EXPECT_EQ(verdictOf({}, result), verdict);
   };
   expect("A sound mesh.", [](Surface&) {});
   expect("A sound mesh with 2 openings.", [](Surface& r) { r.boundary.resize(2); });
@@ -249,4 +236,4 @@ TEST(Verdict, MeshIsUsableUpToOnePercentOfItsTriangles) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

@@ -1,5 +1,3 @@
-#include "embedding.h"
-#include "graph.h"
 #include "handle_shapes.h"
 #include "paper_method.h"
 #include "reconstructions.h"

@@ -16,23 +16,18 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   ASSERT_FALSE(mesh.optimization.intersecting.pairs.empty());
   const auto cleaned = [&](const Options& options) {
     OpenMesh open{triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
-    const auto left_out = cleanMesh(points, false, options, {}, mesh, open);
+    const auto left_out = cleanMesh(points, false, withTopology(options), {}, mesh, open);
     const Triangles surface = internal::surfaceOf(open);
     EXPECT_EQ(findSelfIntersections(points, surface).empty(), left_out.has_value());
     EXPECT_TRUE(left_out || surface == triangles);
     return left_out;
   };
-  Options options = withTopology({});
-  EXPECT_TRUE(cleaned(options));
-  options.surface = SurfaceMode::Closed;
-  EXPECT_EQ(cleaned(options), 0U);
-  options.method = Method::Paper;
-  EXPECT_FALSE(cleaned(options));
-  options = withTopology({});
-  options.intersections = IntersectionMode::Keep;
-  EXPECT_FALSE(cleaned(options));
+  EXPECT_TRUE(cleaned({}));
+  EXPECT_EQ(cleaned(given("surface", "closed")), 0U);
+  EXPECT_FALSE(cleaned(given(paper(), "intersections", "remove")));
+  EXPECT_FALSE(cleaned(given("intersections", "keep")));
   mesh.optimization.report.is_out_of_time = true;
-  EXPECT_FALSE(cleaned(withTopology({})));
+  EXPECT_FALSE(cleaned({}));
 }
 
 TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
@@ -73,13 +68,11 @@ TEST(MeshCleaning, OfATangleTheTrianglesThatAreCertainStay) {
 
 TEST(MeshCleaning, ATangleAmongOtherPartsIsLeftOut) {
   // A line with three bends, in one plane.
-  Positions bent(3, 200);
-  for (Index i = 0; i < 200; ++i) {
+  const Positions bent = pointsAt(200, [](Index i) {
     const double angle = 2.0 * kPi * i / 200;
-    const double radius = 0.32 + 0.048 * std::cos(3.0 * angle);
-    bent.col(i) << 2.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0;
-  }
-  const Result scan = reconstruct(horizontally(0.3 * spiralSphere(600), bent));
+    return onCircle(angle, 0.32 + 0.048 * std::cos(3.0 * angle));
+  });
+  const Result scan = reconstruct(horizontally(0.3 * spiralSphere(600), movedTo(2.0, bent)));
   EXPECT_EQ(scan.surfaces.size(), 1U);
   EXPECT_EQ(scan.left_out.other_parts.size(), 200U);
   ASSERT_EQ(scan.failures.size(), 1U);

@@ -1,7 +1,6 @@
 // The limits in doc/reference.md: results are right within them, and warnings appear beyond.
 
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 
 namespace spherical_param::test {
 namespace {
@@ -24,9 +23,8 @@ Positions sphereWith(const std::vector<double>& radii, int ring, double turn, do
   for (std::size_t i = 0; i < radii.size(); ++i)
     for (int k = 0; k < ring; ++k) {
       const double r = radii[i];
-      const double angle = turn * static_cast<double>(i) + 2.0 * kPi * k / ring;
-      points.emplace_back(r * std::cos(angle), r * std::sin(angle),
-                          -r * r / (1.0 + std::sqrt(1.0 - r * r)));
+      points.push_back(onCircle(turn * static_cast<double>(i) + 2.0 * kPi * k / ring, r,
+                                -r * r / (1.0 + std::sqrt(1.0 - r * r))));
     }
   return positionsOf(points);
 }
@@ -108,11 +106,10 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
 
 TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
   const Mesh tube = bentTube(130.0, 0.0, 8);
-  Options options = sphere();
-  EXPECT_FALSE(meshOf(tube.points, quick(options)).findings.empty());
+  EXPECT_FALSE(meshOf(tube.points, quick(sphere())).findings.empty());
   // Cut into several spheres it is not.
-  options.handles = HandleMode::Auto;
-  EXPECT_EQ(canonical(meshOf(tube.points, options).triangles), canonical(tube.triangles));
+  const Surface cut = meshOf(tube.points, given(sphere(), "handles", "auto"));
+  EXPECT_EQ(canonical(cut.triangles), canonical(tube.triangles));
 }
 
 }  // namespace

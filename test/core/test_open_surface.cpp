@@ -2,7 +2,6 @@
 
 #include "handle_shapes.h"
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 
 namespace spherical_param::test {
 namespace {
@@ -88,9 +87,8 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
     EXPECT_NEAR(result.measures.area, std::abs(rim) / 2.0, 1e-9);
   }
   // Patches of two and three rows are no wider than the gap that counts elsewhere.
-  for (const int rows : {2, 3}) {
+  for (const int rows : {2, 3})
     test::expectSound(surfaceOf(patchOf(9, rows), leftOpen()), 0, 1);
-  }
   // Of a line there is no surface.
   const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(50, 0.0, 1.0);
   EXPECT_THROW(reconstruct(line, leftOpen()), InvalidInput);
@@ -98,9 +96,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
   const Positions points = sphereWithHoles(3000, 2, 0.4);
-  Options options = sphere();
-  options.details = true;
-  const Surface closed = surfaceOf(points, options);
+  const Surface closed = surfaceOf(points, watched(sphere()));
   const Surface open = surfaceOf(points, leftOpen());
   // In a closed mesh, openings have the same room on the sphere.
   EXPECT_EQ(closed.sphere, open.sphere);
@@ -146,8 +142,8 @@ TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
 }
 
 TEST(OpenSurface, HolesAreFilledUpToASize) {
-  Positions points = sphereWithHoles(4000, 2, 0.2);
-  points = pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
+  const Positions points =
+      pointsWhere(sphereWithHoles(4000, 2, 0.2), [](const auto& p) { return p.y() > -0.8; });
   const Surface open = surfaceOf(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];

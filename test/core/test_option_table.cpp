@@ -1,7 +1,6 @@
 #include "spherical_param/option_table.h"
 
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 
 #include <ostream>
 
@@ -15,31 +14,6 @@ namespace {
 
 OptionValue numberOf(const OptionRow& row, double number) {
   return row.is_integer ? OptionValue(static_cast<std::int64_t>(number)) : OptionValue(number);
-}
-
-/// Values at the ends of the range, and all choices.
-std::vector<OptionValue> goodValues(const OptionRow& row) {
-  std::vector<OptionValue> values(row.choices.begin(), row.choices.end());
-  if (row.is_number) {
-    const double infinity = std::numeric_limits<double>::infinity();
-    const double min = row.min_excluded ? std::nextafter(row.min, infinity) : row.min;
-    values.insert(values.end(), {numberOf(row, min), numberOf(row, row.max)});
-  }
-  if (row.optional)
-    values.emplace_back();
-  return values;
-}
-
-/// Numbers out of range.
-std::vector<OptionValue> numbersOutOfRange(const OptionRow& row) {
-  if (!row.is_number)
-    return {};
-  std::vector<OptionValue> values{numberOf(row, row.min - 1.0), numberOf(row, row.max + 1.0)};
-  if (row.min_excluded)
-    values.push_back(numberOf(row, row.min));
-  if (!row.is_integer)
-    values.emplace_back(std::numeric_limits<double>::quiet_NaN());
-  return values;
 }
 
 template <typename Call>
@@ -87,7 +61,14 @@ INSTANTIATE_TEST_SUITE_P(OptionTable, EveryOption, testing::ValuesIn(optionTable
 
 TEST_P(EveryOption, ExtremeIsReadBackChangesNoOtherAndIsMeshed) {
   const OptionRow& row = GetParam();
-  for (const OptionValue& value : goodValues(row)) {
+  std::vector<OptionValue> good(row.choices.begin(), row.choices.end());
+  if (row.is_number) {
+    const double min = row.min_excluded ? std::nextafter(row.min, row.max) : row.min;
+    good.insert(good.end(), {numberOf(row, min), numberOf(row, row.max)});
+  }
+  if (row.optional)
+    good.emplace_back();
+  for (const OptionValue& value : good) {
     SCOPED_TRACE(textOf(value));
     Options options;
     setOption(options, row.name, value);
@@ -106,7 +87,13 @@ TEST_P(EveryOption, ExtremeIsReadBackChangesNoOtherAndIsMeshed) {
 
 TEST_P(EveryOption, OutOfRangeOrOfAnotherKindIsRefusedByName) {
   const OptionRow& row = GetParam();
-  std::vector<OptionValue> bad = numbersOutOfRange(row);
+  std::vector<OptionValue> bad;
+  if (row.is_number)
+    bad = {numberOf(row, row.min - 1.0), numberOf(row, row.max + 1.0)};
+  if (row.is_number && !row.is_integer)
+    bad.emplace_back(std::numeric_limits<double>::quiet_NaN());
+  if (row.min_excluded)
+    bad.push_back(numberOf(row, row.min));
   for (const OptionValue& value : bad)
     if (row.name != "seed") {  // which has the range of its type
       Options options;

@@ -1,9 +1,5 @@
-#include "embedding.h"
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/option_table.h"
 
-#include <iterator>
 #include <stdexcept>
 
 namespace spherical_param::test {
@@ -104,15 +100,10 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
     }
 }
 
-/// An ellipsoid with noise, shuffled, with some of its points twice.
-Positions shuffledWithRepetitions(Index n) {
-  Positions points = withNoise(ellipsoid(n), 0.004, 10);
-  points = horizontally(points, points.leftCols(n / 10));
-  return points(Eigen::all, shuffledRange(points.cols(), 7));
-}
-
 TEST(Reconstruct, AskingForDetailsChangesNoBit) {
-  const Positions points = shuffledWithRepetitions(1500);
+  const Positions rough = withNoise(ellipsoid(1500), 0.004, 10);
+  const Positions repeated = horizontally(rough, rough.leftCols(150));
+  const Positions points = repeated(Eigen::all, shuffledRange(1650, 7));
   for (Options options : bothMethods()) {
     options.paper.max_iterations = 40;
     options.smoothing = options.method == Method::Paper ? 2 : 0;
@@ -158,7 +149,7 @@ TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {
 TEST(Reconstruct, EveryOptionReachesItsStage) {
   using Change = std::pair<std::string, OptionValue>;
   const Positions points = ellipsoid(1500);
-  Options published = given(paper(), "max_iterations", 20);
+  const Options published = given(paper(), "max_iterations", 20);
   const std::vector<std::pair<Options, std::vector<Change>>> changes{
       {Options(), {{"method", "paper"}, {"tolerance", 1e-9}, {"seed", std::int64_t{2}}}},
       {published,
@@ -176,9 +167,8 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
     }
   }
   EXPECT_EQ(surfaceOf(points).embedding.stop_reason, StopReason::Unfinished);
-  published.paper.max_iterations = 2000;
-  published.embedding.tolerance = 0.0;
-  EXPECT_EQ(mesh(ellipsoid(100), published).embedding.iterations, 2000);
+  const Options endless = given(published, "max_iterations", 2000, "tolerance", 0.0);
+  EXPECT_EQ(mesh(ellipsoid(100), endless).embedding.iterations, 2000);
   const Positions rough = noisySphere(300, 0.5);
   EXPECT_TRUE(surfaceOf(rough, quick()).triangles != surfaceOf(rough).triangles);
   const Positions few = randomSphere(12, 1);
@@ -188,19 +178,15 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
 TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
   const Positions points = noisySphere(1500, 0.5);
   for (const int smoothing : {0, 5}) {
-    Options options;
-    options.smoothing = smoothing;
-    options.time_limit = 0.0;
-    const Surface result = surfaceOf(points, options);
+    const Options options = given("smoothing", smoothing);
+    const Surface result = surfaceOf(points, quick(options));
     EXPECT_TRUE(isSphereOverAll(result.triangles, 1500));
     EXPECT_TRUE(result.is_out_of_time);
     // That would take longer than the limit leaves.
     EXPECT_FALSE(result.diagnosis.genus.has_value());
     EXPECT_TRUE(isFound(result, "time limit"));
-    options.time_limit = 1e9;
-    const Surface unhurried = surfaceOf(points, options);
+    const Surface unhurried = surfaceOf(points, given(options, "time_limit", 1e9));
     EXPECT_FALSE(unhurried.is_out_of_time);
-    options.time_limit.reset();
     EXPECT_EQ(unhurried.triangles, surfaceOf(points, options).triangles);
   }
 }

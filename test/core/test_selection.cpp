@@ -2,7 +2,6 @@
 
 #include "handle_shapes.h"
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 
 #include <chrono>
 
@@ -39,11 +38,9 @@ void expectPartition(const Positions& points, const Result& result) {
 }
 
 /// A surface in the numbers of the cloud is that of its points alone.
-void expectAlone(const Positions& points, const Surface& surface, Options options) {
-  options.outliers = OutlierMode::None;
-  options.parts = PartsMode::All;
-  options.threads = 1;
-  const Surface alone = surfaceOf(points(Eigen::all, surface.inputs), options);
+void expectAlone(const Positions& points, const Surface& surface, const Options& options) {
+  const Surface alone = surfaceOf(points(Eigen::all, surface.inputs),
+                                  given(options, "outliers", "none", "parts", "all", "threads", 1));
   EXPECT_EQ(surface.triangles, alone.triangles);
   EXPECT_EQ(surface.sphere, alone.sphere);
   EXPECT_EQ(surface.consolidated, alone.consolidated);
@@ -93,26 +90,21 @@ TEST(Topology, PointsThatSampleWhatIsOpenAreNoStrayPoints) {
 
 TEST(Selection, EverySurfaceIsThatOfItsPointsAlone) {
   const Positions points = mixedCloud();
-  for (const PartsMode parts : {PartsMode::All, PartsMode::Largest, PartsMode::Each})
-    for (const OutlierMode outliers :
-         {OutlierMode::None, OutlierMode::Auto, OutlierMode::Deviation})
-      for (const ConsolidationMode consolidation :
-           {ConsolidationMode::None, ConsolidationMode::Auto})
+  for (const char* parts : {"all", "largest", "each"})
+    for (const OptionValue& outliers : {OptionValue("none"), OptionValue("auto"), OptionValue(4.0)})
+      for (const char* consolidation : {"none", "auto"})
         for (const int threads : {1, 3}) {
-          Options options = quick();
-          options.parts = parts;
-          options.outliers = outliers;
-          options.consolidation = consolidation;
-          options.threads = threads;
+          const Options options = given(quick(), "parts", parts, "outliers", outliers,
+                                        "consolidation", consolidation, "threads", threads);
           const Result result = reconstruct(points, options);
           expectPartition(points, result);
-          EXPECT_EQ(result.surfaces.size(), parts == PartsMode::Each ? 2U : 1U);
+          EXPECT_EQ(result.surfaces.size(), options.parts == PartsMode::Each ? 2U : 1U);
           EXPECT_EQ(result.left_out.not_finite.size(), 2U);
           EXPECT_EQ(result.left_out.outliers, findOutliers(points, options));
-          EXPECT_EQ(result.left_out.outliers.size(), outliers == OutlierMode::None ? 0U : 12U);
+          EXPECT_EQ(result.left_out.outliers.size(), outliers == OptionValue("none") ? 0U : 12U);
           for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
             expectAlone(points, result.surfaces[i], options);
-            if (parts != PartsMode::All) {
+            if (options.parts != PartsMode::All) {
               EXPECT_EQ(result.surfaces[i].inputs, findParts(points, options)[i]);
             }
           }
@@ -165,20 +157,17 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
 }
 
 TEST(Selection, PartsShareOneTimeLimit) {
-  Positions points(3, 0);
-  for (int part = 0; part < 8; ++part)
-    points = horizontally(points, movedTo(4.0 * part, noisySphere(100, 0.5)));
-  Options options = given("parts", "each");
+  const Positions points = inARow(8, 4.0, noisySphere(100, 0.5));
+  const Options each = given("parts", "each");
   for (const auto& [limit, expected] : {std::pair(0.0, 8), std::pair(1e9, 0)}) {
-    options.time_limit = limit;
-    const Result result = reconstruct(points, options);
+    const Result result = reconstruct(points, given(each, "time_limit", limit));
     EXPECT_EQ(result.surfaces.size(), 8U);
     EXPECT_EQ(std::count_if(result.surfaces.begin(), result.surfaces.end(),
                             [](const Surface& surface) { return surface.is_out_of_time; }),
               expected);
   }
   // Without time for a mesh, parts are left out. The third takes it all.
-  options.time_limit = 3.0;
+  Options options = given(each, "time_limit", 3.0);
   bool has_waited = false;
   options.progress = [&](const Progress& progress) {
     if (progress.part == 2 && !std::exchange(has_waited, true))

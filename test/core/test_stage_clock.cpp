@@ -3,7 +3,6 @@
 #include "stage_clock.h"
 
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 
 #include <chrono>
 

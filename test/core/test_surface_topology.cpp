@@ -5,41 +5,30 @@
 #include "glued_spheres.h"
 #include "handle_shapes.h"
 #include "reconstructions.h"
-#include "spherical_param/errors.h"
 #include "topology/topologies.h"
+#include "union_find.h"
 
 namespace spherical_param::test {
 namespace {
 
-/// Whether the mesh stays in one piece when it is cut along a loop of its edges: by a walk over the
-/// triangles that does not cross them.
+/// Whether the mesh stays in one piece when it is cut along a loop of its edges.
 bool staysWhole(const Triangles& triangles, const std::vector<Index>& loop) {
-  std::set<std::pair<Index, Index>> barrier;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Index v = loop[i];
-    const Index w = loop[(i + 1) % loop.size()];
-    barrier.insert({v, w});
-    barrier.insert({w, v});
-  }
-  std::map<std::pair<Index, Index>, Eigen::Index> left_of;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      left_of[{triangles(k, t), triangles((k + 1) % 3, t)}] = t;
-  for (const auto& edge : barrier)
-    if (left_of.count(edge) == 0)
-      return false;
-  std::set<Eigen::Index> seen{0};
-  std::vector<Eigen::Index> stack{0};
-  while (!stack.empty()) {
-    const Eigen::Index t = stack.back();
-    stack.pop_back();
-    for (int k = 0; k < 3; ++k) {
-      const std::pair<Index, Index> edge{triangles((k + 1) % 3, t), triangles(k, t)};
-      if (barrier.count(edge) == 0 && seen.insert(left_of.at(edge)).second)
-        stack.push_back(left_of.at(edge));
-    }
-  }
-  return static_cast<Eigen::Index>(seen.size()) == triangles.cols();
+  std::map<std::pair<Index, Index>, Index> left_of;  // the triangle of each side
+  Index side = 0;
+  for (const auto& edge : sidesOf(triangles))
+    left_of[edge] = side++ / 3;
+  std::set<std::pair<Index, Index>> cut;
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    cut.insert(std::minmax(loop[i], loop[(i + 1) % loop.size()]));
+  UnionFind pieces(columnCount(triangles));
+  Eigen::Index count = triangles.cols();
+  std::size_t crossed = 0;
+  for (const auto& [edge, t] : left_of)
+    if (cut.count(edge) > 0)
+      ++crossed;
+    else if (edge.first < edge.second)
+      count -= pieces.unite(t, left_of.at({edge.second, edge.first})) ? 1 : 0;
+  return crossed == cut.size() && count == 1;
 }
 
 TEST(SurfaceTopology, GluedMeshesHaveTheirLoopsAndAreNotCutByThem) {
@@ -104,9 +93,8 @@ TEST(SurfaceTopology, NoneIsASphere) {
 TEST(SurfaceTopology, HandlesBesideOpenings) {
   const Positions torus = torusCloud(80, 30, 2.5, 1.0);
   for (const double beside : {3.5, 1.5}) {  // outside, and in the hole of the torus
-    const Positions holed = pointsWhere(torus, [&](const Eigen::Vector3d& p) {
-      return (p - Eigen::Vector3d(beside, 0.0, 0.0)).norm() > 0.7;
-    });
+    const Positions holed = pointsWhere(
+        torus, [&](const auto& p) { return (p - Eigen::Vector3d(beside, 0.0, 0.0)).norm() > 0.7; });
     const Surface result = surfaceOf(holed, given("surface", "open"));
     test::expectSound(result, 1, 1);
     EXPECT_EQ(result.verdict, "A sound mesh with 1 handle and 1 opening.");
@@ -139,11 +127,7 @@ TEST(SurfaceTopology, ToriThatTouchAndOneSidedSurfacesAreSaidToBeUnsound) {
 
 TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   const Positions torus = torusCloud(60, 24);
-  Options smoothed;
-  smoothed.smoothing = 3;
-  smoothed.details = true;
-  smoothed.embedding.history_vertices = 100;
-  const Surface smooth = surfaceOf(torus, smoothed);
+  const Surface smooth = surfaceOf(torus, watched(given("smoothing", 3)));
   EXPECT_EQ(smooth.topology.genus, 1);
   EXPECT_EQ(smooth.smoothed.cols(), torus.cols());
   EXPECT_TRUE(smooth.vertex_residuals.empty());
@@ -159,12 +143,10 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
 
 TEST(SurfaceTopology, WithinATimeLimitThereIsASurfaceOrNone) {
   const Positions torus = torusCloud(30, 12);
-  Options options;
   for (const double seconds : {0.0, 1e-3, 3e-3, 1e-2}) {
-    options.time_limit = seconds;
     Surface hasty;
     try {
-      hasty = surfaceOf(torus, options);
+      hasty = surfaceOf(torus, given("time_limit", seconds));
     } catch (const ComputeError&) {  // there was no mesh in time
       EXPECT_GT(seconds, 0.0);
       continue;

@@ -3,7 +3,6 @@
 #include "helpers.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
-#include "triangle_lists.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +10,7 @@ namespace spherical_param::test {
 namespace {
 
 Mesh cornerTetrahedron() {
-  Mesh mesh{Positions::Zero(3, 4), trianglesOf({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
+  Mesh mesh{Positions::Zero(3, 4), tetrahedron()};
   mesh.points.rightCols(3) = Eigen::Matrix3d::Identity();
   return mesh;
 }
@@ -25,9 +24,9 @@ Mesh sphere(Index n) {
 /// A body without any symmetry: an ellipsoid that is pulled to one side.
 Mesh lopsided() {
   Mesh mesh = sphere(300);
-  for (Eigen::Index i = 0; i < mesh.points.cols(); ++i) {
-    const Eigen::Vector3d p = mesh.points.col(i);
-    mesh.points.col(i) << 1.0 * p.x() + 0.3 * p.y() * p.y(), 0.7 * p.y() + 0.2 * p.x() * p.z(),
+  for (auto point : mesh.points.colwise()) {
+    const Eigen::Vector3d p = point;
+    point << p.x() + 0.3 * p.y() * p.y(), 0.7 * p.y() + 0.2 * p.x() * p.z(),
         0.5 * p.z() + 0.1 * p.x();
   }
   return mesh;
@@ -86,10 +85,8 @@ TEST(MeshMeasures, TurnedInsideOutVolumeAndInertiaChangeSign) {
 
 TEST(MeshMeasures, FlatMeshHasTheCentroidOfItsSurface) {
   // A triangle, seen from both sides.
-  Positions points = Positions::Zero(3, 3);
-  points.col(1) << 3.0, 0.0, 0.0;
-  points.col(2) << 0.0, 3.0, 0.0;
-  const MeshMeasures measures = measureMesh(points, trianglesOf({{0, 1, 2}, {0, 2, 1}}));
+  const Positions points = positionsOf({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}});
+  const MeshMeasures measures = measureMesh(points, Triangles{{0, 0}, {1, 2}, {2, 1}});
   EXPECT_EQ(measures.volume, 0.0);
   EXPECT_NEAR(measures.area, 9.0, 1e-14);
   EXPECT_LT((measures.centroid - Eigen::Vector3d(1.0, 1.0, 0.0)).norm(), 1e-15);
@@ -101,10 +98,7 @@ TEST(AreaWeightedNormals, AreTheSumsOfTheTriangles) {
   const Mesh mesh = cornerTetrahedron();
   const Positions normals = areaWeightedNormals(mesh.points, mesh.triangles);
   // The three triangles at the origin have the normals -z, -y and -x; the fourth has (1, 1, 1).
-  EXPECT_EQ(Eigen::Vector3d(normals.col(0)), Eigen::Vector3d(-1.0, -1.0, -1.0));
-  EXPECT_EQ(Eigen::Vector3d(normals.col(1)), Eigen::Vector3d(1.0, 0.0, 0.0));
-  EXPECT_EQ(Eigen::Vector3d(normals.col(2)), Eigen::Vector3d(0.0, 1.0, 0.0));
-  EXPECT_EQ(Eigen::Vector3d(normals.col(3)), Eigen::Vector3d(0.0, 0.0, 1.0));
+  EXPECT_EQ(normals, positionsOf({{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
 }  // namespace

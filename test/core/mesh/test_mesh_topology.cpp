@@ -1,7 +1,6 @@
 #include "spherical_param/mesh_topology.h"
 
 #include "helpers.h"
-#include "triangle_lists.h"
 
 #include <gtest/gtest.h>
 

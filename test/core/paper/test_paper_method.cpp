@@ -2,7 +2,6 @@
 
 #include "core/embedding/embeddings.h"
 #include "core/graph/graph_helpers.h"
-#include "core/triangulation/triangulations.h"
 #include "qhull.h"
 #include "union_find.h"
 
@@ -79,9 +78,6 @@ TEST(PaperGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
     EXPECT_DOUBLE_EQ(length, 0.25);
 }
 
-constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
-                                       EdgeWeights::Adaptive};
-
 Graph nearestGraph(const Positions& points, int k) {
   return nearestNeighborGraph(points, bruteForceNeighbors(points, k), k).graph;
 }
@@ -104,13 +100,13 @@ std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Posi
     u.colwise().normalize();
     Positions next = u;
     double residual = 0.0;
-    for (std::size_t i = 0; i < graph.size(); ++i) {
-      const Eigen::Vector3d ui = u.col(static_cast<Index>(i));
+    for (const Index i : graph.nodes()) {
+      const Eigen::Vector3d ui = u.col(i);
       Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
       double sum = 0.0;
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        const Eigen::Vector3d uj = u.col(graph.neighbors[e]);
-        const double length = (p.col(static_cast<Index>(i)) - p.col(graph.neighbors[e])).norm();
+      for (const Index j : graph.row(i)) {
+        const Eigen::Vector3d uj = u.col(j);
+        const double length = (p.col(i) - p.col(j)).norm();
         const double w = weights == EdgeWeights::Uniform         ? 1.0
                          : weights == EdgeWeights::InverseLength ? 1.0 / length
                                                                  : (ui - uj).norm() / length;
@@ -120,7 +116,7 @@ std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Posi
       laplacian /= sum;
       const Eigen::Vector3d tangential = laplacian - laplacian.dot(ui) * ui;
       residual += tangential.norm() / static_cast<double>(graph.size());
-      next.col(static_cast<Index>(i)) = (ui + lambda * tangential).normalized();
+      next.col(i) = (ui + lambda * tangential).normalized();
     }
     states.emplace_back(u, residual);
     u = next;
@@ -131,15 +127,12 @@ std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Posi
 TEST(PaperEmbedding, IsTheIterationOfFigure3) {
   const Positions points = dentedCloud(300).points;
   const Graph graph = nearestGraph(points, 8);
-  for (const EdgeWeights weights : kAllWeights)
+  for (const EdgeWeights weights :
+       {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive})
     for (const double lambda : {0.5, 0.2}) {
       const int steps = 25;
       const auto expected = figure3(graph, points, weights, lambda, steps);
-      PaperOptions options;
-      options.weights = weights;
-      options.damping = lambda;
-      options.max_iterations = steps;
-      const Embedding result = embed(graph, points, options, 0.0);
+      const Embedding result = embed(graph, points, {25, weights, lambda, steps}, 0.0);
       EXPECT_EQ(result.report.stop_reason, StopReason::IterationLimit);
       EXPECT_EQ(result.report.iterations, steps);
       ASSERT_EQ(result.report.residuals.size(), static_cast<std::size_t>(steps) + 1);
@@ -169,15 +162,10 @@ TEST(PaperEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
   EXPECT_LT(result.report.iterations, 20000);
 }
 
-/// A sphere of n points of radius 1 and one point far away: seen from the centroid, the sphere is
-/// one place and the far point the opposite one. Centring spreads the one place over the
-/// sphere again within a few steps.
-Positions sphereWithOutlier(Index n) {
-  return horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
-}
-
 TEST(PaperEmbedding, CentringUndoesAPassingCollapse) {
-  const Positions points = sphereWithOutlier(400);
+  // Seen from the centroid, the sphere is one place and the far point the opposite one. Centring
+  // spreads the one place over the sphere again within a few steps.
+  const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
   const Embedding result = embed(nearestGraph(points, 10), points, {}, 1e-8);
   EXPECT_NE(result.report.stop_reason, StopReason::Collapsed);
   EXPECT_LT(result.report.centroid_norm, 0.1);

@@ -12,7 +12,7 @@ namespace {
 using Pairs = std::vector<std::array<Index, 2>>;
 
 Pairs pairsOf(const Mesh& mesh) {
-  return findSelfIntersections(mesh.points, mesh.triangles, onThreads(1));
+  return findSelfIntersections(mesh.points, mesh.triangles, Execution{1});
 }
 
 /// Whether two triangles, given by their corners, intersect.
@@ -289,7 +289,7 @@ std::size_t octantsOf(const Pairs& pairs, const Mesh& mesh) {
 }
 
 IntersectingPairs foundIn(const Mesh& mesh, std::size_t most, int threads = 1) {
-  return findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
+  return findPairsUpTo(most, mesh.points, mesh.triangles, Execution{threads});
 }
 
 TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {

@@ -1,21 +1,31 @@
-#include "exact_predicates.h"
+#include "incremental_delaunay.h"
+
+#include "helpers.h"
 #include "qhull.h"
 #include "spherical_param/mesh_topology.h"
-#include "triangulations.h"
 
 namespace spherical_param::test {
 namespace {
 
+/// A closed sphere over all points.
 SphereDelaunay triangulate(const Positions& directions) {
-  return incrementalDelaunay(directions);
+  SphereDelaunay result = incrementalDelaunay(directions);
+  EXPECT_EQ(result.triangles.cols(), 2 * directions.cols() - 4);
+  EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(directions.cols())));
+  return result;
+}
+
+/// n points on the circle of latitude of height z; the angle of point i is that of i turns of n.
+Positions latitude(Index n, double z) {
+  const double radius = std::sqrt(1.0 - z * z);
+  return pointsAt(n, [=](Index i) { return onCircle(2.0 * kPi * i / n, radius, z); });
 }
 
 /// Most triangles around one of the vertices [0, n).
 int highestDegree(const Triangles& triangles, Index n) {
   std::vector<int> degree(static_cast<std::size_t>(n), 0);
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      ++degree[static_cast<std::size_t>(triangles(k, t))];
+  for (const Index v : triangles.reshaped())
+    ++degree[static_cast<std::size_t>(v)];
   return *std::max_element(degree.begin(), degree.end());
 }
 
@@ -24,14 +34,10 @@ Positions clusters(Index n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const Positions centres = randomSphere(5, seed + 100);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i) {
-    const double radius = i % 2 == 0 ? 0.3 : 0.01;
-    points.col(i) = (centres.col(i % 5) +
-                     radius * Eigen::Vector3d(normal(random), normal(random), normal(random)))
-                        .normalized();
-  }
-  return points;
+  return pointsAt(n, [&](Index i) {
+    const Eigen::Vector3d off(normal(random), normal(random), normal(random));
+    return (centres.col(i % 5) + (i % 2 == 0 ? 0.3 : 0.01) * off).normalized();
+  });
 }
 
 /// What an embedding makes of a few limbs: distances to their tips that shrink exponentially.
@@ -39,16 +45,14 @@ Positions limbs(Index n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Positions tips = randomSphere(4, seed + 200);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i) {
+  return pointsAt(n, [&](Index i) {
     const Eigen::Vector3d tip = tips.col(i % 4);
     const Eigen::Vector3d east = tip.unitOrthogonal();
     const double radius = std::exp(-7.0 * uniform(random));
     const double angle = 2.0 * kPi * uniform(random);
-    points.col(i) =
-        (tip + radius * (std::cos(angle) * east + std::sin(angle) * tip.cross(east))).normalized();
-  }
-  return points;
+    return (tip + radius * (std::cos(angle) * east + std::sin(angle) * tip.cross(east)))
+        .normalized();
+  });
 }
 
 TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
@@ -58,7 +62,6 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
       for (const Positions& points : {randomSphere(n, seed), clusters(n, seed), limbs(n, seed),
                                       cap(n, 0.1, {1, 0, 0}, seed)}) {
         const SphereDelaunay result = triangulate(points);
-        expectSound(points, result);
         EXPECT_EQ(result.coincident, 0);
         const Triangles reference = hullByQhull(points);
         if (reference.cols() == 0)
@@ -123,7 +126,6 @@ TEST(IncrementalDelaunay, IsThatOfIntegerArithmeticInClustersOf1em13) {
     const Positions points = horizontally(cluster.directions(z), -z * Eigen::Vector3d::UnitZ());
     const Index opposite = static_cast<Index>(points.cols()) - 1;
     SphereDelaunay result = triangulate(points);
-    expectSound(points, result);
     EXPECT_EQ(result.coincident, 0);
     // Seen from outside, the highest point has the axes the right way round.
     if (z < 0.0)
@@ -168,14 +170,12 @@ TEST(IncrementalDelaunay, EveryPointIsAVertexWhereManyAreInOnePlaneOrPlace) {
   all.push_back(place);
   all.push_back(horizontally(place, some.col(6).replicate(1, 50)));
   for (const Positions& points : all)
-    expectSound(points, triangulate(points));
+    triangulate(points);
   // A prism of two regular n-gons: nothing else is convex.
   EXPECT_NEAR(volumeOf(all[2], triangulate(all[2]).triangles),
               1.2 * 0.5 * 500 * 0.64 * std::sin(2.0 * kPi / 500), 1e-9);
   // Vertices at one place do not crowd round one of them.
-  const Positions crowded = horizontally(some, place);
-  const SphereDelaunay result = triangulate(crowded);
-  expectSound(crowded, result);
+  const SphereDelaunay result = triangulate(horizontally(some, place));
   EXPECT_EQ(result.coincident, 1000);
   EXPECT_LE(highestDegree(result.triangles, 1100), 40);
 }
@@ -184,23 +184,16 @@ TEST(IncrementalDelaunay, EveryPointIsAVertexWhereManyAreInOnePlaneOrPlace) {
 TEST(IncrementalDelaunay, CirclesThroughThePoleAreTriangulatedWhole) {
   for (const Index n : {4, 5, 6, 7, 8, 99, 1000})
     for (const double tilt : {0.0, 0.4}) {
-      Positions points(3, n);
-      for (Index i = 0; i < n; ++i) {
-        const double angle = 2.0 * kPi * i / n;
-        points.col(i) << std::sin(angle) * std::cos(tilt), std::sin(tilt),
-            std::cos(angle) * std::cos(tilt);
-      }
+      const Positions points = latitude(n, std::sin(tilt))(std::vector{1, 2, 0}, Eigen::all);
       const SphereDelaunay result = triangulate(points);
-      expectSound(points, result);
       if (tilt == 0.0) {
         // All points are on one line: a zigzag on either side.
         EXPECT_LE(highestDegree(result.triangles, n), 6);
       }
       // And with few points that are not on it, put in last.
-      points = horizontally(points, Eigen::Vector3d(0.0, -1.0, 0.0));
-      expectSound(points, triangulate(points));
-      points = horizontally(points, Eigen::Vector3d(0.0, 1.0, 0.0));
-      expectSound(points, triangulate(points));
+      const Eigen::Vector3d beside = Eigen::Vector3d::UnitY();
+      triangulate(horizontally(points, -beside));
+      triangulate(horizontally(points, -beside, beside));
     }
 }
 
@@ -221,7 +214,7 @@ TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
         points.col(i) = places.col(rest % 6);
       }
       const SphereDelaunay result = triangulate(points);
-      ASSERT_TRUE(isSphereOverAll(result.triangles, n)) << n << " points, way " << way;
+      ASSERT_FALSE(HasFailure()) << n << " points, way " << way;
       ASSERT_EQ(result.coincident, n - static_cast<Index>(used.size()));
       if (used.size() == 6) {
         ASSERT_GT(volumeOf(points, result.triangles), 0.0);
@@ -245,7 +238,6 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
   for (const double z : {1.0, -1.0}) {
     points.row(2) *= z;
     const SphereDelaunay result = triangulate(horizontally(points, Eigen::Vector3d::UnitZ()));
-    expectSound(horizontally(points, Eigen::Vector3d::UnitZ()), result);
     // From about 2^-200 on they coincide: beyond that, predicates would leave the range of double.
     EXPECT_LT(result.coincident, 3 * (1074 - 195));
     EXPECT_GT(result.coincident, 3 * (1074 - 210));
@@ -256,8 +248,7 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
 TEST(IncrementalDelaunay, CrowdsAreTriangulatedInTime) {
   for (const double radius : {1e-3, 1e-7, 1e-11}) {
     const Positions points = cap(100000, radius, {0.6, 0.0, 0.8}, 2);
-    const SphereDelaunay result = triangulate(points);
-    EXPECT_EQ(result.triangles.cols(), 2 * points.cols() - 4);
+    EXPECT_EQ(incrementalDelaunay(points).triangles.cols(), 2 * points.cols() - 4);
   }
 }
 
