@@ -279,8 +279,7 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
   relocate(bench, std::move(rough));
   // Where nothing is folded, hardly anything intersects: once after the polish is enough.
   if (unfold(bench)) {
-    IntersectingPairs found =
-        untangle(bench, bench.findIntersections(), tuned::kMaxRoundsByEnergy);
+    IntersectingPairs found = untangle(bench, bench.findIntersections(), tuned::kMaxRoundsByEnergy);
     if (found.is_sample)
       return found;
   }
