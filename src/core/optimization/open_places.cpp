@@ -1,6 +1,7 @@
 #include "open_places.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spherical_param::internal {
 

@@ -6,6 +6,7 @@
 #include "loop_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
