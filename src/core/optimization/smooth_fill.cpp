@@ -4,6 +4,7 @@
 #include "indexed.h"
 #include "pi.h"
 #include "progress.h"
+#include "rows.h"
 #include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
