@@ -8,9 +8,6 @@
 
 namespace spherical_param {
 
-/// \addtogroup consolidation
-/// @{
-
 /// Points on the surface that a noisy cloud samples.
 struct Consolidation {
   Positions points;                   ///< 3 x m, m <= n, distinct [unit of the input]
@@ -36,7 +33,5 @@ struct Consolidation {
 /// No guarantees: edges are rounded over the size of the neighbourhood. Leave out outliers before,
 /// \see findOutliers. Isolated points stay where they are.
 Consolidation consolidate(const Positions& points, const Execution& execution = {});
-
-/// @}
 
 }  // namespace spherical_param

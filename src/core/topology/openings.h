@@ -10,9 +10,6 @@
 
 namespace spherical_param {
 
-/// \addtogroup neighbor_graph
-/// @{
-
 /// The openings of a sampled surface.
 struct Openings {
   std::vector<Opening> openings;      ///< the longest boundary first
@@ -23,8 +20,6 @@ struct Openings {
   /// The surface has only one side, like a Moebius strip.
   bool is_one_sided = false;
 };
-
-/// @}
 
 namespace internal {
 
