@@ -366,6 +366,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
                                  const std::vector<Opening>& openings,
                                  const DiagnosisOptions& options, int threads) {
   std::vector<Edge> bridge_edges;
+  bridge_edges.reserve(bridges.size());
   for (const Bridge& bridge : bridges)
     bridge_edges.push_back(edgeOf(bridge.from, bridge.to));
   std::sort(bridge_edges.begin(), bridge_edges.end());
