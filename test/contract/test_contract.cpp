@@ -240,7 +240,7 @@ TEST(Contract, ThreadsAndReportsChangeNoBit) {
 
 TEST(Contract, EveryReportCanEndTheWorkAndTheNextCallIsClean) {
   struct CallersFault {};  // what no library throws
-  const Inputs inputs(150);
+  const Inputs inputs(100);
   for (const auto& [name, run, last_fraction] : allFunctions()) {
     if (!last_fraction)
       continue;
