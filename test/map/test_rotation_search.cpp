@@ -56,11 +56,11 @@ TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
   const auto expect_worse = [&](const Matrix3d& other) {
     EXPECT_GT(alignmentError(first, second, other, 0), error);
   };
-  for (int i = 0; i < 200; ++i)
+  for (int i = 0; i < 60; ++i)
     expect_worse(Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
                      .normalized()
                      .toRotationMatrix());
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 40; ++i)
     expect_worse(test::rotationBy(0.1 * normal(random), {normal(random), normal(random), 0.5}) *
                  rotation);
 }
