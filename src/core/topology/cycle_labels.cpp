@@ -1,5 +1,7 @@
 #include "cycle_labels.h"
 
+#include "shortest_paths.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -14,17 +16,11 @@ CycleLabels::Label lowestBitOf(CycleLabels::Label label) {
 /// surface; memory and time grow with the number and its square.
 std::optional<NeighborRows> powerOf(const Graph& graph, int reach) {
   NeighborRows power;
-  Indexed<Index> seen_from(graph.size(), -1);
+  IndexSet seen(graph.size());
   std::vector<Index> disc;
   for (const Index center : graph.nodes()) {
-    disc.assign(1, center);
-    seen_from[center] = center;
-    std::size_t begin = 0;
-    for (int step = 0; step < reach; ++step)
-      for (const std::size_t end = disc.size(); begin < end; ++begin)
-        for (const Index w : graph.row(disc[begin]))
-          if (std::exchange(seen_from[w], center) != center)
-            disc.push_back(w);
+    seen.clear();
+    collectDisc(center, reach, graph, seen, disc);
     std::sort(disc.begin() + 1, disc.end());
     power.neighbors.insert(power.neighbors.end(), disc.begin() + 1, disc.end());
     power.endRow();

@@ -6,6 +6,7 @@
 #include "loop_search.h"
 #include "parallel.h"
 #include "progress.h"
+#include "shortest_paths.h"
 
 #include <cmath>
 #include <cstdint>
@@ -186,14 +187,7 @@ private:
       if (blocked_[v] != 0 || near.contains(v) || !hasLabel(v))
         continue;
       sources.push_back(v);
-      near.insert(v);
-      disc.assign(1, v);
-      std::size_t begin = 0;
-      for (Index step = 0; step < distance; ++step)
-        for (const std::size_t end = disc.size(); begin < end; ++begin)
-          for (const Index w : graph_.row(disc[begin]))
-            if (near.insert(w))
-              disc.push_back(w);
+      collectDisc(v, distance, graph_, near, disc);
     }
     return sources;
   }
