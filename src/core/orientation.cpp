@@ -66,8 +66,12 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
     if (decides(meanOver(points, seen, side), min_of_normals))
       return FacedBy::Normals;
   }
+  if (!is_open) {
+    orientOutward(points, triangles, embedding);
+    return FacedBy::Outward;
+  }
   double seen_by_sensor = 0.0;
-  if (is_open && info.viewpoint)
+  if (info.viewpoint)
     seen_by_sensor =
         meanOver(points, seen, [&](const auto& corners, const Eigen::Vector3d& normal) {
           return normal.dot((*info.viewpoint - points.col(corners[0])).normalized());
@@ -80,7 +84,7 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   if (decides(seen_by_sensor, min_seen))
     return FacedBy::Viewpoint;
   const auto up = [](const auto&, const Eigen::Vector3d& normal) { return normal.z(); };
-  if (is_open && decides(meanOver(points, seen, up), min_up))
+  if (decides(meanOver(points, seen, up), min_up))
     return FacedBy::Up;
   if (decides(seen_by_sensor, min_hardly_seen))
     return FacedBy::Viewpoint;

@@ -328,7 +328,8 @@ std::vector<Index> trianglesOfSurface(const OpenMesh& mesh) {
 }
 
 std::size_t surfaceCount(const OpenMesh& mesh) {
-  return trianglesOfSurface(mesh).size();
+  return static_cast<std::size_t>(
+      std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
 }
 
 Triangles surfaceOf(const OpenMesh& mesh) {
