@@ -43,8 +43,8 @@ TEST(RotationSearch, ErrorIsTheMeanSquaredDistanceAtArea1) {
 }
 
 TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
-  const SphereSurface first = test::firstBlob().over(test::spiralSphere(700)).surface();
-  const SphereSurface second = test::secondBlob().over(test::spiralSphere(600)).surface();
+  const SphereSurface first = test::firstBlob().over(test::spiralSphere(1500)).surface();
+  const SphereSurface second = test::secondBlob().over(test::spiralSphere(1300)).surface();
   const Matrix3d rotation = found(first, second);
   const Matrix3d back = found(second, first);
   EXPECT_LT((rotation * back - Matrix3d::Identity()).norm(), 1e-5);
@@ -56,11 +56,11 @@ TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
   const auto expect_worse = [&](const Matrix3d& other) {
     EXPECT_GT(alignmentError(first, second, other, 0), error);
   };
-  for (int i = 0; i < 60; ++i)
+  for (int i = 0; i < 1000; ++i)
     expect_worse(Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
                      .normalized()
                      .toRotationMatrix());
-  for (int i = 0; i < 40; ++i)
+  for (int i = 0; i < 200; ++i)
     expect_worse(test::rotationBy(0.1 * normal(random), {normal(random), normal(random), 0.5}) *
                  rotation);
 }
