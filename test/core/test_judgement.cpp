@@ -5,37 +5,6 @@
 namespace spherical_param::test {
 namespace {
 
-TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
-  for (const Positions& points : {ellipsoid(500), cubeGrid(8)})
-    for (const Options& options : bothMethods()) {
-      const Surface result = mesh(points, options);
-      expectGuarantees(points, result);
-      EXPECT_TRUE(result.self_intersections.empty());
-      EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
-      EXPECT_FALSE(result.is_noisy);
-      EXPECT_EQ(result.smoothed.cols(), 0);
-      EXPECT_EQ(result.smoothing.volume_before, 0.0);
-      EXPECT_EQ(result.verdict, "A sound mesh.");
-      for (const Finding& finding : result.findings)
-        EXPECT_FALSE(finding.is_fault) << finding.text;
-    }
-}
-
-TEST(Judgement, CubeHasItsMeasuresAndItsCreases) {
-  const Eigen::Vector3d shift(5.0, -3.0, 7.0);
-  Positions points = 2.0 * cubeGrid(9);
-  points.colwise() += shift;
-  const MeshMeasures measures = mesh(points).measures;
-  // Corners are cut if any crease is missing.
-  EXPECT_NEAR(measures.volume, 8.0, 1e-12);
-  EXPECT_NEAR(measures.area, 24.0, 1e-12);
-  EXPECT_EQ(measures.box_min, shift);
-  EXPECT_EQ(measures.box_max, Eigen::Vector3d(shift.array() + 2.0));
-  EXPECT_LT((measures.centroid - shift - Eigen::Vector3d::Ones()).norm(), 1e-12);
-  // m a^2 / 6
-  EXPECT_LT((measures.inertia - 8.0 * 4.0 / 6.0 * Eigen::Matrix3d::Identity()).norm(), 1e-11);
-}
-
 TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
   const Positions torus = torusCloud(40, 20, 1.0, 0.5);
   const Positions bowl = spiralSphere(1500).rightCols(1100);  // without its top
@@ -44,6 +13,7 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
     options.handles = HandleMode::None;
     options.paper.k = 10;
     const Surface of_torus = mesh(torus, options);
+    EXPECT_TRUE(of_torus.handles.empty());
     EXPECT_GT(of_torus.diagnosis.edges_outside_graph, 0.01);
     options.paper.k = 25;
     const Surface of_bowl = mesh(bowl, options);
@@ -101,26 +71,19 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
 }
 
 TEST(Judgement, MarksAreThoseOfTheFindings) {
-  const auto count = [](const Surface& result, std::uint8_t bit) {
-    const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
-    return static_cast<std::size_t>(std::count_if(
-        marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
-  };
-  const Positions rough = noisySphere(300, 1.0);
-  const Surface tangled = mesh(rough, watched(quick()));
+  const Surface tangled = mesh(noisySphere(300, 1.0), watched(quick()));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
   EXPECT_FALSE(intersecting.empty());
-  EXPECT_EQ(count(tangled, triangle_mark::self_intersection), intersecting.size());
-  for (const Index t : intersecting)
-    EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
-                  triangle_mark::self_intersection,
-              0);
-  const Surface parts = mesh(twoSpheres(200, 160, 5.0), watched(sphere()));
-  EXPECT_GT(count(parts, triangle_mark::part_bridge), 0U);
-  EXPECT_EQ(count(parts, triangle_mark::handle), 0U);
-  EXPECT_EQ(count(mesh(ellipsoid(300), watched()), 0xff), 0U);
+  std::set<Index> marked;
+  for (const Index t : indicesOf(tangled.diagnosis.triangle_marks))
+    if (tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
+        triangle_mark::self_intersection)
+      marked.insert(t);
+  EXPECT_EQ(marked, intersecting);
+  EXPECT_EQ(mesh(ellipsoid(300), watched()).diagnosis.triangle_marks,
+            std::vector<std::uint8_t>(2 * 300 - 4, 0));
 }
 
 TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
@@ -139,11 +102,9 @@ TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
   const Eigen::VectorXd moved = (result.smoothed - vertices).colwise().norm();
   EXPECT_GT(moved.minCoeff(), 0.0);
   EXPECT_NEAR(result.smoothing.max_displacement, moved.maxCoeff(), 1e-12);
-  EXPECT_NEAR(result.smoothing.rms_displacement, std::sqrt(moved.squaredNorm() / 500.0), 1e-12);
-  const double volume = volumeOf(result.smoothed, result.triangles);
   EXPECT_NEAR(result.smoothing.volume_before, result.measures.volume, 1e-12);
-  EXPECT_NEAR(result.smoothing.volume_after, volume, 1e-12);
-  EXPECT_NEAR(volume, result.measures.volume, 1e-3 * result.measures.volume);
+  EXPECT_NEAR(volumeOf(result.smoothed, result.triangles), result.measures.volume,
+              1e-3 * result.measures.volume);
   const auto deviation = [](const Positions& of) {
     return (of.colwise().norm().array() - 1.0).matrix().norm();
   };

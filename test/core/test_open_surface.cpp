@@ -76,14 +76,10 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   for (const char* const mode : {"open", "auto"}) {
     const Surface result = surfaceOf(patch, leftOpen(mode));
     test::expectSound(result, 0, 2);
+    const Positions vertices = verticesOf(patch, result);
     double rim = 0.0;  // twice the area that the boundary encloses
-    for (const auto& loop : result.boundary)
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const auto v = result.input_of_vertex[static_cast<std::size_t>(loop[i])];
-        const auto w =
-            result.input_of_vertex[static_cast<std::size_t>(loop[(i + 1) % loop.size()])];
-        rim += patch(0, v) * patch(1, w) - patch(1, v) * patch(0, w);
-      }
+    for (const auto& [v, w] : boundaryOf(result.triangles))
+      rim += vertices.col(v).cross(vertices.col(w)).z();
     EXPECT_NEAR(result.measures.area, std::abs(rim) / 2.0, 1e-9);
   }
   // Patches of two and three rows are no wider than the gap that counts elsewhere.
@@ -103,7 +99,7 @@ TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
   EXPECT_TRUE(closed.isClosed());
   EXPECT_EQ(closed.filledOpenings(), 2U);
   ASSERT_EQ(closed.openings.size(), 2U);
-  std::vector<int> count(static_cast<std::size_t>(closed.triangles.cols()), 0);
+  Indexed<int> count(columnCount(closed.triangles), 0);
   for (std::size_t i = 0; i < 2; ++i) {
     const Opening& opening = closed.openings[i];
     EXPECT_EQ(opening.loop, open.openings[i].loop);
@@ -111,17 +107,16 @@ TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
     EXPECT_NEAR(static_cast<double>(opening.triangles.size()),
                 static_cast<double>(opening.loop.size()), 10.0);
     for (const Index t : opening.triangles) {
-      ++count[static_cast<std::size_t>(t)];
+      ++count[t];
       const Eigen::Vector3d center = points(Eigen::all, closed.triangles.col(t)).rowwise().mean();
       EXPECT_LT((center - opening.center).norm(), 0.7 * opening.width);
     }
   }
-  for (Eigen::Index t = 0; t < closed.triangles.cols(); ++t) {
-    const int of_openings = count[static_cast<std::size_t>(t)];
-    EXPECT_LE(of_openings, 1);
+  for (const Index t : indicesOf(count)) {
+    EXPECT_LE(count[t], 1);
     EXPECT_EQ(closed.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
                   triangle_mark::filled_hole,
-              of_openings * triangle_mark::filled_hole);
+              count[t] * triangle_mark::filled_hole);
   }
   // Beside the openings an open mesh may lack a few more, where it would be no manifold.
   EXPECT_NEAR(

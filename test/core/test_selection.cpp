@@ -30,9 +30,7 @@ void expectPartition(const Positions& points, const Result& result) {
     all.insert(all.end(), list.begin(), list.end());
   }
   std::sort(all.begin(), all.end());
-  ASSERT_EQ(static_cast<Eigen::Index>(all.size()), points.cols());
-  for (Index i = 0; i < points.cols(); ++i)
-    EXPECT_EQ(all[static_cast<std::size_t>(i)], i);
+  EXPECT_EQ(all, range(0, points.cols()));
   for (const Index i : result.left_out.not_finite)
     EXPECT_FALSE(points.col(i).allFinite());
 }
