@@ -15,15 +15,9 @@ Mesh cornerTetrahedron() {
   return mesh;
 }
 
-/// A unit sphere of n points.
-Mesh sphere(Index n) {
-  const Positions points = spiralSphere(n);
-  return {points, triangulateSphere(points)};
-}
-
 /// A body without any symmetry: an ellipsoid that is pulled to one side.
 Mesh lopsided() {
-  Mesh mesh = sphere(300);
+  Mesh mesh{spiralSphere(300), triangulateSphere(spiralSphere(300))};
   for (auto point : mesh.points.colwise()) {
     const Eigen::Vector3d p = point;
     point << p.x() + 0.3 * p.y() * p.y(), 0.7 * p.y() + 0.2 * p.x() * p.z(),
@@ -61,7 +55,6 @@ TEST(MeshMeasures, MoveAndTurnWithTheMeshAndLoseNoMoreDigitsThanItsPoints) {
     const Positions moved = (turn * mesh.points).colwise() + shift;
     const MeshMeasures measures = measureMesh(moved, mesh.triangles);
     EXPECT_NEAR(measures.volume, still.volume, tolerance);
-    EXPECT_NEAR(signedVolume(moved, mesh.triangles), still.volume, tolerance);
     EXPECT_NEAR(measures.area, still.area, tolerance);
     EXPECT_NEAR(measures.mean_edge_length, still.mean_edge_length, tolerance / 10.0);
     EXPECT_LT((measures.centroid - (turn * still.centroid + shift)).norm(), tolerance);
@@ -78,7 +71,6 @@ TEST(MeshMeasures, TurnedInsideOutVolumeAndInertiaChangeSign) {
   const MeshMeasures outward = measureMesh(mesh.points, mesh.triangles);
   const MeshMeasures inward = measureMesh(mesh.points, turned);
   EXPECT_NEAR(inward.volume, -outward.volume, 1e-15);
-  EXPECT_DOUBLE_EQ(signedVolume(mesh.points, turned), -outward.volume);
   EXPECT_LT((inward.centroid - outward.centroid).norm(), 1e-15);
   EXPECT_LT((inward.inertia + outward.inertia).norm(), 1e-15);
 }
