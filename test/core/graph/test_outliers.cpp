@@ -26,8 +26,8 @@ TEST(Outliers, AreThePointsOffTheSurfaceAndNoOthers) {
     const Positions both = horizontally(1.4 * spiralSphere(4), 1e6 * spiralSphere(4));
     expectFound(sphere, horizontally(both, both.rightCols(2)));
     // Groups of three.
-    expectFound(sphere, horizontally(1.5 * spiralSphere(6),
-                                     horizontally(1.51 * spiralSphere(6), 1.52 * spiralSphere(6))));
+    expectFound(sphere, horizontally(1.5 * spiralSphere(6), 1.51 * spiralSphere(6),
+                                     1.52 * spiralSphere(6)));
   }
   expectFound(halfDenseSphere(1500), 1.8 * spiralSphere(6));
 }
@@ -35,71 +35,62 @@ TEST(Outliers, AreThePointsOffTheSurfaceAndNoOthers) {
 TEST(Outliers, ShapesHaveNoneHoweverTheyAreSampled) {
   Positions ellipsoid = spiralSphere(2000);
   ellipsoid.row(0) *= 6.0;
-  const Positions others = spiralSphere(300).colwise() + Eigen::Vector3d(3.0, 0.0, 0.0);
   for (const Positions& points :
        {randomSphere(4, 15), randomSphere(31, 15), randomSphere(60, 5), randomSphere(2000, 2),
         cubeGrid(15), ellipsoid, bentTube(20.0, 2.0, 16).points, halfDenseSphere(1500),
-        spiralSphere(2000).leftCols(900).eval(), horizontally(spiralSphere(2000), others)})
+        spiralSphere(2000).leftCols(900).eval(),
+        horizontally(spiralSphere(2000), movedTo(3.0, spiralSphere(300)))})
     for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation})
       EXPECT_TRUE(outliersOf(points, mode).empty()) << points.cols() << " points";
 }
 
 /// From the definition in the header, for lists in order of which enough is always left.
 DeviatingPoints byDefinition(const Positions& points, const NeighborLists& lists, double sigma) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  std::vector<bool> is_outlier(n, false);
-  const auto neighbors = [&](std::size_t i) {
-    std::vector<Index> left = rowOf(lists, static_cast<Index>(i));
-    left.erase(std::remove_if(left.begin(), left.end(),
-                              [&](Index j) { return is_outlier[static_cast<std::size_t>(j)]; }),
-               left.end());
-    left.resize(16);
+  const auto n = static_cast<Index>(points.cols());
+  std::set<Index> outliers;
+  const auto neighbors = [&](Index i) {
+    std::vector<Index> left;
+    for (const Index j : rowOf(lists, i))
+      if (left.size() < 16 && outliers.count(j) == 0)
+        left.push_back(j);
     return left;
   };
   DeviatingPoints result;
-  result.scores.resize(n);
+  result.scores.resize(columnCount(points));
+  Eigen::Map<Eigen::ArrayXd> scores(result.scores.data(), n);
   for (bool found = true; found;) {
-    found = false;
-    std::vector<double> distance(n);
-    for (std::size_t i = 0; i < n; ++i)
-      distance[i] = (points(Eigen::all, neighbors(i)).colwise() - points.col(static_cast<Index>(i)))
-                        .colwise()
-                        .norm()
-                        .mean();
+    Eigen::ArrayXd distance(n);
+    for (Index i = 0; i < n; ++i)
+      distance[i] =
+          (points(Eigen::all, neighbors(i)).colwise() - points.col(i)).colwise().norm().mean();
     std::vector<double> counted;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (is_outlier[i])
+    for (Index i = 0; i < n; ++i) {
+      if (outliers.count(i) > 0)
         continue;
-      std::vector<double> around;
-      for (const Index j : neighbors(i))
-        around.push_back(distance[static_cast<std::size_t>(j)]);
+      Eigen::ArrayXd around = distance(neighbors(i));
       std::sort(around.begin(), around.end());
-      const double median = around[8];
       Positions plane(3, 0);
       for (const Index j : neighbors(i))
-        if (distance[static_cast<std::size_t>(j)] <= 2.0 * median)
+        if (distance[j] <= 2.0 * around[8])
           plane = horizontally(plane, points.col(j));
       const Eigen::Vector3d centroid = plane.rowwise().mean();
       plane.colwise() -= centroid;
-      const Eigen::Vector3d normal =
-          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(plane * plane.transpose())
-              .eigenvectors()
-              .col(0);
-      result.scores[i] =
-          std::abs(normal.dot(points.col(static_cast<Index>(i)) - centroid)) / median;
-      counted.push_back(std::min(result.scores[i], 1.0));
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(plane * plane.transpose());
+      const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+      scores[i] = std::abs(normal.dot(points.col(i) - centroid)) / around[8];
+      counted.push_back(std::min(scores[i], 1.0));
     }
     const Eigen::Map<const Eigen::ArrayXd> values(counted.data(),
                                                   static_cast<Eigen::Index>(counted.size()));
     const double deviation = std::sqrt((values - values.mean()).square().mean());
     result.threshold = std::max(values.mean() + sigma * deviation, 1.0);
-    for (std::size_t i = 0; i < n; ++i)
-      if (!is_outlier[i] && result.scores[i] > result.threshold)
-        is_outlier[i] = found = true;
+    const std::size_t before = outliers.size();
+    for (Index i = 0; i < n; ++i)
+      if (scores[i] > result.threshold)
+        outliers.insert(i);
+    found = outliers.size() > before;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    if (is_outlier[i])
-      result.indices.push_back(static_cast<Index>(i));
+  result.indices.assign(outliers.begin(), outliers.end());
   return result;
 }
 

@@ -175,38 +175,25 @@ TEST(ExactPredicates, OrientationIsExactWhereProductsUnderflow) {
   }
 }
 
-Triangles turned(Triangles triangles) {
-  triangles.row(1).swap(triangles.row(2));
-  return triangles;
+Triangles turned(const Triangles& triangles) {
+  return triangles(std::vector{1, 0, 2}, Eigen::all);
 }
 
 // The corner of a unit cube, thinner and thinner, far from the origin, and with a far outlier.
 TEST(ExactPredicates, VolumeHasTheSignOfTheWholeHoweverLittleItIs) {
-  Triangles outward(3, 4);
-  outward << 0, 0, 0, 1,  //
-      2, 1, 3, 2,         //
-      1, 3, 2, 3;
+  const Triangles outward = test::tetrahedron();
   for (const double height : {1.0, 0x1p-40, 0x1p-300, 0x1p-1074})
     for (const double offset : {0.0, 0x1p20, 0x1p300}) {
-      Positions points(3, 4);
-      points << 0, 1, 0, 0,  //
-          0, 0, 1, 0,        //
-          0, 0, 0, height;
+      Positions points{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, height}};
       points.topRows(2).array() += offset;
       const int expected = offset < 0x1p50 ? 1 : 0;  // beyond, all are in one place
       EXPECT_EQ(volumeSign(points, outward), expected) << height << " " << offset;
       EXPECT_EQ(volumeSign(points, turned(outward)), -expected) << height << " " << offset;
     }
   // A fan around a line to a far point: large volumes that nearly cancel.
-  Positions points(3, 5);
-  points << 0, 1, 0, 0.25, 0x1p60,  //
-      0, 0, 1, 0.25, 0x1p60,        //
-      0, 0, 0, 0x1p-45, 0;
-  Triangles fan(3, 6);
+  const Positions points{{0, 1, 0, 0.25, 0x1p60}, {0, 0, 1, 0.25, 0x1p60}, {0, 0, 0, 0x1p-45, 0}};
   // The bipyramid over 0, 1, 2 with the tips 3 above and 4 in the plane: as 0, 1, 2, 3 is.
-  fan << 0, 1, 2, 1, 0, 2,  //
-      1, 2, 0, 0, 2, 1,     //
-      3, 3, 3, 4, 4, 4;
+  const Triangles fan{{0, 1, 2, 1, 0, 2}, {1, 2, 0, 0, 2, 1}, {3, 3, 3, 4, 4, 4}};
   EXPECT_EQ(volumeSign(points, fan), 1);
   EXPECT_EQ(volumeSign(points, turned(fan)), -1);
   EXPECT_EQ(volumeSign(points, Triangles(3, 0)), 0);

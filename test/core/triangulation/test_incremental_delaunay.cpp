@@ -1,6 +1,7 @@
 #include "incremental_delaunay.h"
 
 #include "helpers.h"
+#include "indexed.h"
 #include "qhull.h"
 #include "spherical_param/mesh_topology.h"
 
@@ -76,30 +77,26 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
 /// Integer points in the plane, and their image around the lowest or highest point of the sphere:
 /// an integer step is 2^-53, small enough for the sphere to be its tangent plane.
 struct IntegerCluster {
-  std::vector<std::array<std::int64_t, 2>> places;
+  Indexed<std::array<std::int64_t, 2>> places;
 
   Positions directions(double z) const {
-    Positions result(3, static_cast<Eigen::Index>(places.size()));
-    for (std::size_t i = 0; i < places.size(); ++i)
-      result.col(static_cast<Eigen::Index>(i)) << std::ldexp(places[i][0], -53),
-          std::ldexp(places[i][1], -53), z;
-    return result;
+    return pointsAt(places.count(), [&](Index i) {
+      return Eigen::Vector3d(std::ldexp(places[i][0], -53), std::ldexp(places[i][1], -53), z);
+    });
   }
   /// Twice the area, counter-clockwise.
-  std::int64_t area(std::size_t a, std::size_t b, std::size_t c) const {
+  std::int64_t area(Index a, Index b, Index c) const {
     return (places[b][0] - places[a][0]) * (places[c][1] - places[a][1]) -
            (places[b][1] - places[a][1]) * (places[c][0] - places[a][0]);
   }
   /// Positive if d is inside the circle of a, b, c (counter-clockwise). Exact below 2^14.
-  std::int64_t inCircle(std::size_t a, std::size_t b, std::size_t c, std::size_t d) const {
-    std::int64_t sum = 0;
-    const std::array<std::size_t, 3> corners{a, b, c};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int64_t x = places[corners[k]][0] - places[d][0];
-      const std::int64_t y = places[corners[k]][1] - places[d][1];
-      sum += (x * x + y * y) * area(d, corners[(k + 1) % 3], corners[(k + 2) % 3]);
-    }
-    return sum;
+  std::int64_t inCircle(Index a, Index b, Index c, Index d) const {
+    const auto square = [&](Index i) {
+      const std::int64_t x = places[i][0] - places[d][0];
+      const std::int64_t y = places[i][1] - places[d][1];
+      return x * x + y * y;
+    };
+    return square(a) * area(d, b, c) + square(b) * area(d, c, a) + square(c) * area(d, a, b);
   }
 };
 
@@ -132,18 +129,14 @@ TEST(IncrementalDelaunay, IsThatOfIntegerArithmeticInClustersOf1em13) {
       flipOrientation(result.triangles);
     int flat = 0;
     int with_area = 0;
-    for (const auto& t : canonical(result.triangles)) {
-      if (std::max({t[0], t[1], t[2]}) == opposite)
+    for (const auto& [a, b, c] : canonical(result.triangles)) {
+      if (std::max({a, b, c}) == opposite)
         continue;
-      const auto a = static_cast<std::size_t>(t[0]);
-      const auto b = static_cast<std::size_t>(t[1]);
-      const auto c = static_cast<std::size_t>(t[2]);
-      ASSERT_GE(cluster.area(a, b, c), 0);
-      ++(cluster.area(a, b, c) > 0 ? with_area : flat);
-      for (std::size_t d = 0; d < cluster.places.size(); ++d)
-        if (cluster.area(a, b, c) > 0) {
-          ASSERT_LE(cluster.inCircle(a, b, c, d), 0);
-        }
+      const std::int64_t area = cluster.area(a, b, c);
+      ASSERT_GE(area, 0);
+      ++(area > 0 ? with_area : flat);
+      for (Index d = 0; area > 0 && d < opposite; ++d)
+        ASSERT_LE(cluster.inCircle(a, b, c, d), 0);
     }
     // On one line, both sides of the polygon are flat. Elsewhere, flat ones are not Delaunay.
     ASSERT_TRUE(flat == 0 || with_area == 0);
@@ -199,12 +192,8 @@ TEST(IncrementalDelaunay, CirclesThroughThePoleAreTriangulatedWhole) {
 
 // Every way to put 4, 5 or 6 points to 6 places, some on one circle.
 TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
-  Positions places(3, 6);
-  places << 0, 1, 0, 0, 0.6, -1,  //
-      0, 0, 1, 0, 0, 0,           //
-      1, 0, 0, -1, 0.8, 0;
-  for (const Index n : {4, 5, 6}) {
-    const auto ways = static_cast<int>(std::lround(std::pow(6.0, n)));
+  const Positions places{{0, 1, 0, 0, 0.6, -1}, {0, 0, 1, 0, 0, 0}, {1, 0, 0, -1, 0.8, 0}};
+  for (const auto& [n, ways] : {std::pair(4, 1296), std::pair(5, 7776), std::pair(6, 46656)})
     for (int way = 0; way < ways; ++way) {
       Positions points(3, n);
       std::set<int> used;
@@ -220,7 +209,6 @@ TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
         ASSERT_GT(volumeOf(points, result.triangles), 0.0);
       }
     }
-  }
 }
 
 // Distances from the pole, and from its antipode, from 1/2 down to the smallest doubles.
@@ -228,12 +216,8 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
   Positions points = randomSphere(50, 1);
   for (int k = 1; k < 1074; ++k) {
     const double d = std::ldexp(1.0, -k);
-    Positions ring(3, 3);
-    ring << d, -0.5 * d, -0.75 * d,  //
-        0.125 * d, d, -d,            //
-        1.0, 1.0, 1.0;
-    ring.colwise().normalize();
-    points = horizontally(points, ring);
+    const Positions ring{{d, -0.5 * d, -0.75 * d}, {0.125 * d, d, -d}, {1.0, 1.0, 1.0}};
+    points = horizontally(points, ring.colwise().normalized());
   }
   for (const double z : {1.0, -1.0}) {
     points.row(2) *= z;
