@@ -4,6 +4,8 @@
 #include "helpers.h"
 #include "local_delaunay_graph.h"
 
+#include <gtest/gtest.h>
+
 /// Neighbour graphs for tests of the core's stages.
 namespace spherical_param::test {
 

@@ -7,15 +7,12 @@
 #include "multilevel_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <gtest/gtest.h>
-
 /// A surface and short calls for the tests of the multilevel embedding and its parts.
 namespace spherical_param::test {
 
 /// An ellipsoid with dents and its true edges.
 struct Cloud {
   Positions points;
-  Triangles triangles;
   Graph graph;
 };
 
@@ -26,8 +23,7 @@ inline Cloud dentedCloud(Index n) {
   for (Index i = 0; i < n; ++i)
     cloud.points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
   cloud.points.row(2) *= 1.7;
-  cloud.triangles = triangulateSphere(sphere);
-  cloud.graph = graphOfMesh(cloud.points, cloud.triangles);
+  cloud.graph = graphOfMesh(cloud.points, triangulateSphere(sphere));
   return cloud;
 }
 

@@ -3,8 +3,6 @@
 #include "graphs.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 namespace {
 

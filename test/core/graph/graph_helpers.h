@@ -4,8 +4,6 @@
 #include "graphs.h"
 #include "spherical_param/reconstruct.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 
 using Edges = std::set<std::pair<Index, Index>>;

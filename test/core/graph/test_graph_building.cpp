@@ -66,20 +66,15 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
 }
 
 TEST(GraphBuilding, OfEquallyLongPairsThatOfLowerIndicesIsFound) {
-  Positions line(3, 3);
-  line << 0, 1, -1,  //
-      0, 0, 0,       //
-      0, 0, 0;
   ComponentTree::Pair pair{1.0, 1, 2};
-  ComponentTree(line).findNearest(0, {}, pair);
+  ComponentTree(Positions{{0, 1, -1}, {0, 0, 0}, {0, 0, 0}}).findNearest(0, {}, pair);
   EXPECT_EQ(pair.from, 0);
   EXPECT_EQ(pair.to, 1);
 }
 
 TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {
   for (const double scale : {1.0, 1e-100, 1e-150, 1e-160, 1e-200, 1e-300, 1e-320, 0.0}) {
-    Positions points(3, 2);
-    points << 0.0, 3.0 * scale, 0.0, 4.0 * scale, 0.0, 0.0;
+    const Positions points{{0.0, 3.0 * scale}, {0.0, 4.0 * scale}, {0.0, 0.0}};
     EXPECT_DOUBLE_EQ(edgeLength(points, 0, 1),
                      std::max(5.0 * scale, std::numeric_limits<double>::min()));
   }

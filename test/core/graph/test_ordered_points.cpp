@@ -34,12 +34,9 @@ void expectDistinctPointsAlongTheCurve(const Positions& points) {
 
 /// Many points in one cell of the curve, which has 2^21 an axis: apart, and some of them twice.
 Positions crowd() {
-  Positions points(3, 1002);
-  for (Eigen::Index i = 0; i < 1000; ++i)
-    points.col(i) = Eigen::Vector3d(1e-12 * static_cast<double>((i * 7) % 900), 0.0, 1e-13);
-  points.col(1000) = Eigen::Vector3d(1.0, 1.0, 1.0);
-  points.col(1001) = Eigen::Vector3d(0.0, 1.0, 0.5);
-  return points;
+  const Positions points =
+      pointsAt(1000, [](Index i) { return Eigen::Vector3d(1e-12 * (i * 7 % 900), 0.0, 1e-13); });
+  return horizontally(points, Eigen::Vector3d(1.0, 1.0, 1.0), Eigen::Vector3d(0.0, 1.0, 0.5));
 }
 
 TEST(OrderedPoints, AreTheDistinctPointsAlongTheCurve) {

@@ -8,8 +8,6 @@
 #include "spherical_param/sphere_triangulation.h"
 #include "surface_energy.h"
 
-#include <gtest/gtest.h>
-
 /// Meshes to optimise, and the energy from its definition.
 namespace spherical_param::test {
 
@@ -64,13 +62,6 @@ inline Case noisySphere(Index n, double noise, std::uint64_t seed) {
 inline std::vector<Case> roughCases() {
   return {scrambledEllipsoid(300, 0.3, 400, 1), noisySphere(300, 0.5, 2),
           radialStart(withNoise(bentTube(12.0, 2.5, 10).points, 0.02, 3))};
-}
-
-/// The mesh of a sphere on other points, in a cube: nearly all of its triangles intersect others.
-inline Case tangle(Index n) {
-  Case of = ellipsoid(n, 1.0, 1.0);
-  of.points = randomCube(n, 31);
-  return of;
 }
 
 inline EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {

@@ -22,8 +22,7 @@ OpenMesh opened(const Positions& points, const Triangles& triangles, double spac
 struct DoublePyramid {
   explicit DoublePyramid(Index n) : points(3, n + 2), triangles(3, 2 * n) {
     for (Index i = 0; i < n; ++i) {
-      const double angle = 2.0 * kPi * i / n;
-      points.col(i) << std::cos(angle), std::sin(angle), 0.0;
+      points.col(i) = onCircle(2.0 * kPi * i / n);
       triangles.col(2 * i) << i, (i + 1) % n, n;
       triangles.col(2 * i + 1) << (i + 1) % n, i, n + 1;
     }
@@ -62,10 +61,9 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
   std::vector<Index> loop;
   for (Index i = 0; i < n; ++i) {
     const Index next = (i + 1) % n;
-    const double angle = 2.0 * kPi * i / n;
     for (Index ring = 0; ring < rings; ++ring) {
-      points.col(ring * n + i) << std::cos(angle), std::sin(angle), 0.0;
-      points.col(ring * n + i) *= 1.0 - static_cast<double>(ring) / rings;
+      points.col(ring * n + i) =
+          onCircle(2.0 * kPi * i / n, 1.0 - static_cast<double>(ring) / rings);
       if (ring + 1 < rings) {
         all.push_back({ring * n + i, (ring + 1) * n + i, ring * n + next});
         all.push_back({ring * n + next, (ring + 1) * n + i, (ring + 1) * n + next});
@@ -74,8 +72,7 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
     all.push_back({center - n + i, center, center - n + next});
     // Above: around the tip, and a vertex in each triangle but one.
     const Index v = tip + i;
-    points.col(v) << std::cos(2.4 * i), std::sin(2.4 * i), 0.0;
-    points.col(v) *= 0.3 + 0.6 * i / n;  // where triangles are not thin
+    points.col(v) = onCircle(2.4 * i, 0.3 + 0.6 * i / n);  // where triangles are not thin
     loop.push_back(i);
     if (i == 0) {
       all.push_back({i, next, tip});
@@ -87,8 +84,8 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
   }
   for (Index v = tip; v < tip + n; ++v)
     loop.push_back(v);
-  const auto m = static_cast<Index>(all.size());
-  const Triangles triangles = Eigen::Map<const Triangles>(all[0].data(), 3, m);
+  const Triangles triangles =
+      Eigen::Map<const Triangles>(all[0].data(), 3, static_cast<Eigen::Index>(all.size()));
   const Triangles surface = internal::surfaceOf(opened(points, triangles, 1e-3, loop));
   const MeshTopology topology = checkTopology(surface, columnCount(points));
   EXPECT_TRUE(topology.manifold());

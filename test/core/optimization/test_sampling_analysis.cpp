@@ -2,16 +2,13 @@
 
 #include "graphs.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 namespace {
 
 /// A grid on the side of a cylinder of radius 1.
 Positions cylinderGrid(int around, int along, double spacing_along) {
   return gridOf(along, around, [=](int i, int j) {
-    const double angle = 2.0 * kPi * j / around;
-    return Eigen::Vector3d(std::cos(angle), std::sin(angle), spacing_along * i);
+    return onCircle(2.0 * kPi * j / around, 1.0, spacing_along * i);
   });
 }
 
@@ -35,12 +32,11 @@ TEST(SamplingAnalysis, EvenAndRandomSamplingsDoNotFollowTheCurvature) {
   Positions torus(3, n);
   for (Index i = 0; i < n; ++i) {
     const double a = 2.0 * kPi * uniform(random);
-    cylinder.col(i) << std::cos(a), std::sin(a), 4.0 * uniform(random);
+    cylinder.col(i) = onCircle(a, 1.0, 4.0 * uniform(random));
     double b = 2.0 * kPi * uniform(random);
     while (1.4 * uniform(random) > 1.0 + 0.4 * std::cos(b))
       b = 2.0 * kPi * uniform(random);
-    const double radius = 1.0 + 0.4 * std::cos(b);
-    torus.col(i) << radius * std::cos(a), radius * std::sin(a), 0.4 * std::sin(b);
+    torus.col(i) = onCircle(a, 1.0 + 0.4 * std::cos(b), 0.4 * std::sin(b));
   }
   EXPECT_NEAR(samplingOf(cylinder).alignment, 0.0, 0.15);
   EXPECT_NEAR(samplingOf(torus).alignment, 0.0, 0.15);

@@ -20,13 +20,9 @@ TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
   // The caps have a fifth of the sphere's area, and so of its points.
   EXPECT_GT(added, 200U);
   EXPECT_LT(added, 1200U);
-  const double error =
-      (smooth.filled.rightCols(smooth.filled.cols() - n).colwise().norm().array() - 1.0)
-          .abs()
-          .maxCoeff();
-  EXPECT_LT(error, 0.04);  // 0.2 if flat: the height of the caps
-  const MeshTopology topology = checkTopology(smooth.triangles, smooth.vertexCount());
-  EXPECT_TRUE(topology.isSphere());
+  const auto radii = smooth.filled.rightCols(smooth.filled.cols() - n).colwise().norm();
+  EXPECT_LT((radii.array() - 1.0).abs().maxCoeff(), 0.04);  // 0.2 if flat: the height of the caps
+  EXPECT_TRUE(checkTopology(smooth.triangles, smooth.vertexCount()).isSphere());
   EXPECT_TRUE(findSelfIntersections(smooth.filled, smooth.triangles).empty());
   EXPECT_EQ(smooth.verdict.substr(smooth.verdict.find(';')),
             "; " + std::to_string(added) + " vertices added in 2 filled openings.");
@@ -48,11 +44,8 @@ struct Plate {
   std::vector<std::vector<Index>> openings{{}};
 
   Plate() {
-    for (Index i = 0; i < 120; ++i) {
-      const double angle = 2.0 * kPi * (i % 40) / 40.0;
-      const double radius = 1.0 + 0.15 * (i / 40);
-      points.col(i) << radius * std::cos(angle), radius * std::sin(angle), 0.0;
-    }
+    for (Index i = 0; i < 120; ++i)
+      points.col(i) = onCircle(2.0 * kPi * (i % 40) / 40.0, 1.0 + 0.15 * (i / 40));
     for (Index i = 0; i < 80; ++i) {
       const Index next = i % 40 == 39 ? i - 39 : i + 1;
       triangles.col(2 * i) << i, i + 40, next + 40;
@@ -77,15 +70,13 @@ TEST(SmoothFill, OfAPlateIsFlatAndAsDenseAsThePlate) {
       checkTopology(fill.triangles, static_cast<std::size_t>(fill.points.cols()));
   EXPECT_TRUE(topology.manifold() && topology.oriented && topology.unused_vertices.empty());
   EXPECT_EQ(topology.euler_characteristic, 1);
+  const auto sides = sidesOf(fill.triangles.rightCols(fill.triangles.cols() - 160));
   double sum = 0.0;
-  double count = 0.0;
-  for (Index t = 160; t < fill.triangles.cols(); ++t)
-    for (Index k = 0; k < 3; ++k, ++count)
-      sum +=
-          (fill.points.col(fill.triangles(k, t)) - fill.points.col(fill.triangles((k + 1) % 3, t)))
-              .norm();
-  EXPECT_GT(sum / count, 0.5 * 0.16);  // edges of the rim
-  EXPECT_LT(sum / count, 2.0 * 0.16);
+  for (const auto& [v, w] : sides)
+    sum += (fill.points.col(v) - fill.points.col(w)).norm();
+  const double mean = sum / static_cast<double>(sides.size());
+  EXPECT_GT(mean, 0.5 * 0.16);  // edges of the rim
+  EXPECT_LT(mean, 2.0 * 0.16);
 }
 
 TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
@@ -112,8 +103,7 @@ TEST(SmoothFill, WhatIsNoDiscStays) {
   // The outer ring is over an opening, and wide.
   Plate plate;
   plate.points.rightCols(40) *= 3.0;
-  std::vector<Index> ring(80);
-  std::iota(ring.begin(), ring.end(), Index{80});
+  std::vector<Index> ring = range(80, 160);
   const auto fill = fillSmoothly(plate.points, plate.triangles, {ring}, {});
   EXPECT_EQ(fill.points, plate.points);
   EXPECT_EQ(fill.triangles, plate.triangles);

@@ -3,8 +3,6 @@
 #include "graphs.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 namespace {
 
@@ -33,12 +31,10 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
       const double a = 2.0 * kPi * p / m;
       const double b = 2.0 * kPi * q / m;
       const double k = 1.0 - (std::cos(a) + std::cos(b) + std::cos(a + b)) / 3.0;
-      Positions points(3, m * m);
-      for (Index i = 0; i < m; ++i)
-        for (Index j = 0; j < m; ++j) {
-          const double phase = a * i + b * j;
-          points.col(i * m + j) << std::cos(phase), std::sin(phase), std::cos(phase + 1.0);
-        }
+      const Positions points = gridOf(m, m, [=](int i, int j) {
+        const double phase = a * i + b * j;
+        return Eigen::Vector3d(std::cos(phase), std::sin(phase), std::cos(phase + 1.0));
+      });
       SmoothingOptions options{SmoothingMethod::Umbrella, steps, false};
       EXPECT_LT(largestDifference(smoothSurface(points, triangles, options).points,
                                   std::pow(1.0 - k, steps) * points),
@@ -55,9 +51,9 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
 TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
   const Mesh mesh = noisyMesh(100, 0.1, 5);
   const Graph graph = graphOfMesh(mesh.points, mesh.triangles);
-  Positions means(3, 100);
-  for (Index i = 0; i < 100; ++i)
-    means.col(i) = mesh.points(Eigen::all, rowOf(graph, i)).rowwise().mean();
+  const Positions means = pointsAt(100, [&](Index i) -> Eigen::Vector3d {
+    return mesh.points(Eigen::all, rowOf(graph, i)).rowwise().mean();
+  });
   EXPECT_LT(
       largestDifference(
           smoothSurface(mesh.points, mesh.triangles, {SmoothingMethod::Umbrella, 1, false}).points,
@@ -81,8 +77,7 @@ TEST(Smoothing, VolumeIsRestored) {
 
 TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
   const Mesh mesh = noisyMesh(200, 0.1, 7);
-  Positions stray(3, 2);
-  stray << 0.5, 7.0, 0.25, 8.0, 0.125, 9.0;
+  const Positions stray{{0.5, 7.0}, {0.25, 8.0}, {0.125, 9.0}};
   for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth =
         smoothSurface(horizontally(mesh.points, stray), mesh.triangles, {method, 5});
@@ -104,8 +99,7 @@ TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Eigen::Vector3d shift(1000.0, -2000.0, 500.0);
   const Positions moved = (50.0 * rotation * mesh.points).colwise() + shift;
-  Triangles reversed = mesh.triangles;
-  reversed.row(1).swap(reversed.row(2));
+  const Triangles reversed = mesh.triangles(std::vector{0, 2, 1}, Eigen::all);
   for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, {method, 5});
     const Smoothing other = smoothSurface(moved, mesh.triangles, {method, 5});
@@ -125,8 +119,7 @@ TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
   Positions flat = mesh.points;
   flat.row(2).setZero();
   const Positions same = Positions::Constant(3, 80, 0.3);
-  Triangles two_sides(3, 2);
-  two_sides << 0, 0, 1, 2, 2, 1;
+  const Triangles two_sides{{0, 0}, {1, 2}, {2, 1}};
   for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing none = smoothSurface(mesh.points, mesh.triangles, {method, 0});
     EXPECT_EQ(none.points, mesh.points);

@@ -33,11 +33,9 @@ Scene cutTorus(int rings, int ring, double tube_radius) {
   const auto n = static_cast<Index>(rings * ring);
   Scene torus{{}, Triangles(3, 2 * n - 4), {}};
   torus.points = gridOf(rings, ring, [=](int r, int k) {
-    const double around = 2.0 * kPi * r / rings;
     const double angle = 2.0 * kPi * k / ring;
-    const double radius = 1.0 + tube_radius * std::cos(angle);
-    return Eigen::Vector3d(radius * std::cos(around), radius * std::sin(around),
-                           tube_radius * std::sin(angle));
+    return onCircle(2.0 * kPi * r / rings, 1.0 + tube_radius * std::cos(angle),
+                    tube_radius * std::sin(angle));
   });
   const Triangles whole = torusTriangles(rings, ring);
   // The last ring of quads makes place for two polygons, cut in zigzag.
@@ -123,14 +121,8 @@ TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
   const int fine = 8 * 7 + 1;
   const Positions creased =
       pointsWhere(cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
-        int at_end = 0;
-        bool coarse = true;
-        for (int c = 0; c < 3; ++c) {
-          const long step = std::lround((p[c] + 0.5) * (fine - 1));
-          at_end += step % (fine - 1) == 0 ? 1 : 0;
-          coarse = coarse && step % 8 == 0;
-        }
-        return coarse || at_end >= 2;
+        const Eigen::Array3i step = ((p.array() + 0.5) * (fine - 1)).round().cast<int>();
+        return (step / 8 * 8 == step).all() || (step == 0 || step == fine - 1).count() >= 2;
       });
   expectClosed("8 times denser along edges", starShaped(creased.colwise().normalized(), creased));
   expectClosed("too narrow a handle", cutTorus(20, 5, 0.4));

@@ -2,8 +2,6 @@
 
 #include "graphs.h"
 
-#include <gtest/gtest.h>
-
 namespace spherical_param::test {
 namespace {
 

@@ -8,10 +8,6 @@
 namespace spherical_param::test {
 namespace {
 
-Graph delaunayGraph(const Positions& points) {
-  return localDelaunayGraph(points).graph;
-}
-
 /// The mesh of the faces of a graph, and of the other nodes.
 std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std::size_t genus) {
   const auto faces = meshFaces(points, graph, genus, {});
@@ -23,9 +19,8 @@ std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std
 /// The edges of a mesh, {lower, higher}.
 std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
   std::set<std::pair<Index, Index>> edges;
-  for (const auto& t : triangles.colwise())
-    for (Eigen::Index k = 0; k < 3; ++k)
-      edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+  for (const auto& [v, w] : sidesOf(triangles))
+    edges.insert(std::minmax(v, w));
   return edges;
 }
 
@@ -40,7 +35,7 @@ std::size_t countLost(const Triangles& before, const Triangles& after) {
 
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   const Positions torus = torusCloud(40, 16, 1.0, 0.4);
-  const Graph graph = delaunayGraph(torus);
+  const Graph graph = localDelaunayGraph(torus).graph;
   const auto cut = meshOf(torus, graph, 0);
   ASSERT_TRUE(cut);
   EXPECT_TRUE(isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
@@ -53,7 +48,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   const Positions sphere = spiralSphere(1500);
   Positions thin = sphere;
   thin.row(2) *= 0.1;
-  const Graph graph = delaunayGraph(thin);
+  const Graph graph = localDelaunayGraph(thin).graph;
   const auto right = meshOf(thin, graph, 0);
   ASSERT_TRUE(right);
   std::vector<Bridge> bridges;
@@ -72,12 +67,10 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
 
 TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
   // Two spheres, and a line of points that sticks out of one of them.
-  Positions points(3, 605);
-  points << spiralSphere(300), spiralSphere(300).colwise() + Eigen::Vector3d(2.5, 0, 0),
-      Positions::Zero(3, 5);
-  for (Eigen::Index i = 0; i < 5; ++i)
-    points(1, 600 + i) = 1.2 + 0.2 * static_cast<double>(i);
-  const auto mesh = meshOf(points, delaunayGraph(points), 0);
+  const Positions points =
+      horizontally(spiralSphere(300), movedTo(2.5, spiralSphere(300)),
+                   pointsAt(5, [](Index i) { return Eigen::Vector3d(0.0, 1.2 + 0.2 * i, 0.0); }));
+  const auto mesh = meshOf(points, localDelaunayGraph(points).graph, 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 605));
 }
@@ -85,7 +78,7 @@ TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
 TEST(FaceMesh, SaysWhatIsNoFace) {
   // The loop of 20 points and more around a hole is no face.
   const Positions points = sphereWithHoles(1000, 1, 0.4);
-  const auto mesh = meshFaces(points, delaunayGraph(points), 0, {});
+  const auto mesh = meshFaces(points, localDelaunayGraph(points).graph, 0, {});
   ASSERT_TRUE(mesh);
   ASSERT_EQ(mesh->is_filling.size(), columnCount(mesh->triangles));
   Index fillings = 0;
@@ -100,7 +93,7 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
 
 TEST(FaceMesh, IsNoneWithoutFaces) {
   const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(20, 0.0, 19.0);
-  EXPECT_FALSE(meshOf(line, delaunayGraph(line), 0));
+  EXPECT_FALSE(meshOf(line, localDelaunayGraph(line).graph, 0));
 }
 
 }  // namespace

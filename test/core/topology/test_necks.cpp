@@ -12,19 +12,15 @@ namespace {
 
 /// Points on a tube of radius 1 with round ends.
 Positions needle(int rings, int around) {
-  Positions points = tube(rings, around);
+  const Positions points = tube(rings, around);
   const double step = 2.0 * kPi / around;
   const double end = step * (rings - 1);
   std::vector<Eigen::Vector3d> all(points.colwise().begin(), points.colwise().end());
   for (int ring = 1; ring * step < 1.4; ++ring) {
     const auto count = static_cast<int>(around * std::cos(ring * step));
-    for (int a = 0; a < count; ++a) {
-      const double angle = 2.0 * kPi * (a + 0.5 * ring) / count;
-      const double radius = std::cos(ring * step);
-      const double height = std::sin(ring * step);
-      all.emplace_back(radius * std::cos(angle), radius * std::sin(angle), -height);
-      all.emplace_back(radius * std::cos(angle), radius * std::sin(angle), end + height);
-    }
+    for (int a = 0; a < count; ++a)
+      for (const double z : {-std::sin(ring * step), end + std::sin(ring * step)})
+        all.push_back(onCircle(2.0 * kPi * (a + 0.5 * ring) / count, std::cos(ring * step), z));
   }
   all.emplace_back(0.0, 0.0, -1.0);
   all.emplace_back(0.0, 0.0, end + 1.0);
@@ -55,34 +51,27 @@ Cut cutOf(const Positions& points) {
 
 /// Checks that loops are walks of a graph, and two steps from each other and from openings.
 void expectLoopsApart(const Cut& cut) {
-  std::vector<std::vector<Index>> loops;
+  std::map<Index, const void*> loop_of;
   for (const Opening& opening : cut.openings.openings)
-    loops.push_back(opening.loop);
+    for (const Index v : opening.loop)
+      EXPECT_TRUE(loop_of.emplace(v, &opening).second);
+  for (const CutLoop& neck : cut.necks)
+    for (const Index v : neck.nodes)
+      EXPECT_TRUE(loop_of.emplace(v, &neck).second);
   for (const CutLoop& neck : cut.necks) {
-    const std::size_t n = neck.nodes.size();
-    EXPECT_GE(n, 6U);
-    for (std::size_t i = 0; i < n; ++i)
-      EXPECT_TRUE(cut.graph.row(neck.nodes[i]).contains(neck.nodes[(i + 1) % n]));
-    loops.push_back(neck.nodes);
+    EXPECT_GE(neck.nodes.size(), 6U);
+    for (std::size_t i = 0; i < neck.nodes.size(); ++i) {
+      EXPECT_TRUE(cut.graph.row(neck.nodes[i]).contains(neck.after(i)));
+      for (const Index w : cut.graph.row(neck.nodes[i]))
+        EXPECT_TRUE(loop_of.count(w) == 0 || loop_of.at(w) == &neck);
+    }
   }
-  std::map<Index, std::size_t> loop_of;
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    for (const Index v : loops[i])
-      EXPECT_TRUE(loop_of.emplace(v, i).second);
-  for (std::size_t i = cut.openings.openings.size(); i < loops.size(); ++i)
-    for (const Index v : loops[i])
-      for (const Index w : cut.graph.row(v)) {
-        const auto other = loop_of.find(w);
-        EXPECT_TRUE(other == loop_of.end() || other->second == i);
-      }
 }
 
 TEST(Necks, AreNoneWhereASphereHasRoom) {
-  EXPECT_TRUE(cutOf(spiralSphere(1500)).necks.empty());
-  EXPECT_TRUE(cutOf(randomSphere(1500, 1)).necks.empty());
-  EXPECT_TRUE(cutOf(cubeGrid(14)).necks.empty());
-  EXPECT_TRUE(cutOf(hemisphere(800)).necks.empty());
-  EXPECT_TRUE(cutOf(needle(20, 16)).necks.empty());
+  for (const Positions& points :
+       {spiralSphere(1500), randomSphere(1500, 1), cubeGrid(14), hemisphere(800), needle(20, 16)})
+    EXPECT_TRUE(cutOf(points).necks.empty());
 }
 
 TEST(Necks, DivideLongTubes) {
@@ -98,7 +87,7 @@ TEST(Necks, DivideLongTubes) {
 TEST(Necks, MakeMeshesOfLongTubesSound) {
   const Result result = reconstruct(needle(200, 10));
   ASSERT_EQ(result.surfaces.size(), 1U);
-  const Surface& surface = result.surfaces.front();
+  const Surface& surface = result.surface();
   EXPECT_TRUE(surface.topology.isSphere());
   EXPECT_TRUE(surface.self_intersections.empty());
   // There is no map to one sphere.

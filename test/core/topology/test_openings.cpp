@@ -1,24 +1,18 @@
 #include "graphs.h"
 
-#include "core/graph/graph_helpers.h"
 #include "open_shapes.h"
 #include "topologies.h"
 
 namespace spherical_param::test {
 namespace {
 
-Graph graphOf(const Positions& points) {
-  return test::graphOf(points, bruteForceNeighbors(points, 24)).graph;
-}
-
 std::vector<Opening> openingsOf(const Positions& points) {
-  return test::openingsOf(points, graphOf(points)).openings;
+  return test::openingsOf(points, graphOf(points, bruteForceNeighbors(points, 24)).graph).openings;
 }
 
 TEST(Openings, AreNoneOfClosedSurfacesHoweverTheyAreSampled) {
-  EXPECT_TRUE(openingsOf(spiralSphere(1500)).empty());
-  EXPECT_TRUE(openingsOf(randomSphere(1500, 1)).empty());
-  EXPECT_TRUE(openingsOf(cubeGrid(14)).empty());
+  for (const Positions& points : {spiralSphere(1500), randomSphere(1500, 1), cubeGrid(14)})
+    EXPECT_TRUE(openingsOf(points).empty());
 }
 
 TEST(Openings, HaveTheSizesOfTheHole) {
