@@ -72,7 +72,6 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   const Positions patch = pointsWhere(flatPatch(40), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
   });
-  EXPECT_THROW(reconstruct(patch, sphere()), InvalidInput);
   for (const char* const mode : {"open", "auto"}) {
     const Surface result = surfaceOf(patch, leftOpen(mode));
     test::expectSound(result, 0, 2);

@@ -79,13 +79,18 @@ TEST(Reconstruct, NastySetsAreMeshed) {
       }
 }
 
-TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReported) {
+TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReportedUnlessCentringUndoesIt) {
+  // Seen from the centroid, the sphere is one place and the far point the opposite one. Centring
+  // spreads the one place over the sphere again within a few steps.
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
   const Surface result = mesh(points, given(paper(), "max_iterations", 0));
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_FALSE(result.embedding.fallback_start);
   EXPECT_TRUE(isFound(result, "collapsed"));
+  const Surface centred = mesh(points, given(paper(), "k", 10, "tolerance", 1e-8));
+  EXPECT_NE(centred.embedding.stop_reason, StopReason::Collapsed);
+  EXPECT_LT(centred.embedding.centroid_norm, 0.1);
 }
 
 TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {

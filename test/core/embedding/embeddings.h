@@ -45,21 +45,4 @@ inline Setting converging(double tolerance) {
   return options;
 }
 
-/// Moves unit vectors along tangent vectors.
-inline Positions moved(const Positions& u, const Positions& step, double fraction) {
-  return (u + fraction * step).colwise().normalized();
-}
-
-/// A vector in the tangent plane of each unit vector.
-inline Positions randomTangent(const Positions& u, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal;
-  Positions result(3, u.cols());
-  for (double& entry : result.reshaped())
-    entry = normal(generator);
-  for (Eigen::Index i = 0; i < u.cols(); ++i)
-    result.col(i) -= u.col(i).dot(result.col(i)) * u.col(i);
-  return result;
-}
-
 }  // namespace spherical_param::test

@@ -28,7 +28,6 @@ TEST(MultilevelEmbedding, IcosahedronByHand) {
               1e-9);
 }
 
-/// The energy of an embedding.
 double energyOf(const Graph& graph, const Embedding& embedding) {
   return EmbeddingEnergy(graph, 1).value(embedding.directions);
 }

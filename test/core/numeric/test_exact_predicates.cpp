@@ -199,16 +199,13 @@ TEST(ExactPredicates, VolumeHasTheSignOfTheWholeHoweverLittleItIs) {
   EXPECT_EQ(volumeSign(points, Triangles(3, 0)), 0);
 }
 
-TEST(Coplanarity, OneBitOffAPlaneIsNotCoplanar) {
-  Positions points = test::randomSphere(200, 3);
-  EXPECT_FALSE(areCoplanar(points));
-  points.row(2).setConstant(0.1);
-  EXPECT_TRUE(areCoplanar(points));
-  points(2, 77) = std::nextafter(0.1, 1.0);
-  EXPECT_FALSE(areCoplanar(points));
-}
-
-TEST(Coplanarity, LinesAndPointsAreCoplanar) {
+TEST(Coplanarity, IsThatOfPlanesLinesAndPointsToTheLastBit) {
+  Positions plane = test::randomSphere(200, 3);
+  EXPECT_FALSE(areCoplanar(plane));
+  plane.row(2).setConstant(0.1);
+  EXPECT_TRUE(areCoplanar(plane));
+  plane(2, 77) = std::nextafter(0.1, 1.0);
+  EXPECT_FALSE(areCoplanar(plane));
   Positions line = Vector3d(1, 2, 4) * Eigen::RowVectorXd::LinSpaced(50, 0.0, 49.0);
   EXPECT_TRUE(areCoplanar(line));
   EXPECT_TRUE(areCoplanar(Positions::Constant(3, 50, 0.3)));
@@ -240,9 +237,8 @@ TEST(Coplanarity, PlanesAreFoundExactlyWhateverTheMagnitudes) {
   const std::vector<double> scales{0x1p-1074, 0x1p-660, 0x1p-300, 1.0, 0x1p60, 0x1p500, 0x1p1000};
   int flat = 0;
   for (int round = 0; round < 500; ++round) {
-    Eigen::Matrix<int, 3, 5> places;
-    for (int i = 0; i < places.size(); ++i)
-      places.data()[i] = integer(random);
+    Eigen::Matrix<int, 3, 5> places =
+        Eigen::Matrix<int, 3, 5>::NullaryExpr([&] { return integer(random); });
     if (round % 2 == 0)
       places.row(2) = places.row(0) - 2 * places.row(1);
     Positions points = places.cast<double>();

@@ -9,10 +9,7 @@ namespace {
 
 TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
   // Whole numbers: no scale rounds them, and the least are denormal.
-  std::mt19937_64 random(1);
-  Positions points(3, 1000);
-  for (Eigen::Index i = 0; i < points.size(); ++i)
-    points.data()[i] = static_cast<double>(random() % 2047) - 1023.0;
+  Positions points = (1023.0 * randomCube(1000, 1)).array().round();
   const std::vector<Index> order = mortonOrder(points);
   for (const double scale :
        {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(), 0x1p-300,

@@ -30,7 +30,6 @@ bool meet(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return result;
 }
 
-/// Corners as columns.
 Eigen::Matrix3d corners(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                         const Eigen::Vector3d& c) {
   Eigen::Matrix3d result;

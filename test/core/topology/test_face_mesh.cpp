@@ -16,7 +16,6 @@ std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std
   return withAllNodes(points, graph, faces->triangles);
 }
 
-/// The edges of a mesh, {lower, higher}.
 std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
   std::set<std::pair<Index, Index>> edges;
   for (const auto& [v, w] : sidesOf(triangles))

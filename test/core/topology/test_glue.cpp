@@ -30,9 +30,7 @@ Triangles cappedTube() {
   return tube;
 }
 
-/// A torus that is cut along its ring 0, whose right copies follow the nodes.
-///
-/// \param tube its triangles.
+/// A torus of the triangles of a tube, cut along its ring 0, whose right copies follow the nodes.
 CutGraph cutTorus(const Triangles& tube) {
   CutGraph cut;
   cut.points = spiralSphere(kLeft);

@@ -5,7 +5,6 @@
 #include "graph_building.h"
 #include "graphs.h"
 #include "open_shapes.h"
-#include "spherical_param/reconstruct.h"
 
 namespace spherical_param::test {
 namespace {
@@ -82,16 +81,6 @@ TEST(Necks, DivideLongTubes) {
     EXPECT_EQ(cut.spheres, cut.necks.size() + 1);
     expectLoopsApart(cut);
   }
-}
-
-TEST(Necks, MakeMeshesOfLongTubesSound) {
-  const Result result = reconstruct(needle(200, 10));
-  ASSERT_EQ(result.surfaces.size(), 1U);
-  const Surface& surface = result.surface();
-  EXPECT_TRUE(surface.topology.isSphere());
-  EXPECT_TRUE(surface.self_intersections.empty());
-  // There is no map to one sphere.
-  EXPECT_EQ(surface.sphere.cols(), 0);
 }
 
 }  // namespace
