@@ -31,8 +31,8 @@ void expectConsistent(const Positions& input, const Consolidation& result) {
     next = std::max(next, point + 1);
   }
   ASSERT_EQ(next, result.points.cols());
-  const Eigen::ArrayXd moved =
-      (result.points(Eigen::all, result.point_of_input) - input).colwise().norm().transpose();
+  const Positions steps = result.points(Eigen::all, result.point_of_input) - input;
+  const Eigen::ArrayXd moved = steps.colwise().norm().transpose().array();
   const double rounding = 1e-12 * moved.maxCoeff();
   EXPECT_NEAR(result.report.max_displacement, moved.maxCoeff(), rounding);
   EXPECT_NEAR(result.report.mean_displacement, moved.mean(), rounding);

@@ -74,37 +74,37 @@ std::vector<Index> stateOf(const SphereMesh& mesh, Index vertex_count) {
 }
 
 /// Random moves, and what each of them must answer.
-class Moves {
-public:
-  Moves(SphereMesh& mesh, Index vertex_count, std::uint64_t seed)
-      : mesh_(mesh), vertex_count_(vertex_count), random_(seed) {}
+struct Moves {
+  SphereMesh& mesh;
+  Index vertex_count;
+  std::mt19937_64 random;
 
   bool split() {
-    const Index v = below(vertex_count_);
-    if (isInMesh(mesh_, v))
+    const Index v = below(vertex_count);
+    if (isInMesh(mesh, v))
       return false;
     const Index t = triangle();
-    const std::array<Index, 3> corners{mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)};
-    const auto parts = mesh_.split(t, v);
+    const std::array<Index, 3> corners{mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2)};
+    const auto parts = mesh.split(t, v);
     EXPECT_EQ(parts[0], t);
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(mesh_.vertex(parts[k], 0), v);
-      EXPECT_EQ(mesh_.vertex(parts[k], 1), corners[(k + 1) % 3]);
-      EXPECT_EQ(mesh_.vertex(parts[k], 2), corners[(k + 2) % 3]);
+      EXPECT_EQ(mesh.vertex(parts[k], 0), v);
+      EXPECT_EQ(mesh.vertex(parts[k], 1), corners[(k + 1) % 3]);
+      EXPECT_EQ(mesh.vertex(parts[k], 2), corners[(k + 2) % 3]);
     }
     return true;
   }
 
   bool merge() {
-    const Index v = below(vertex_count_);
-    if (!isInMesh(mesh_, v))
+    const Index v = below(vertex_count);
+    if (!isInMesh(mesh, v))
       return false;
-    const bool may = mesh_.degree(v) == 3 && mesh_.triangles().cols() > 4;
+    const bool may = mesh.degree(v) == 3 && mesh.triangles().cols() > 4;
     std::vector<Index> around;
-    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const Index t = mesh_.merge(v);
+    mesh.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+    const Index t = mesh.merge(v);
     EXPECT_EQ(t >= 0, may);
-    EXPECT_EQ(isInMesh(mesh_, v), !may);
+    EXPECT_EQ(isInMesh(mesh, v), !may);
     if (may) {
       EXPECT_NE(std::find(around.begin(), around.end(), t), around.end());
     }
@@ -114,22 +114,22 @@ public:
   bool flip() {
     const Index t = triangle();
     const int k = static_cast<int>(below(3));
-    const Index c = mesh_.vertex(t, k);
-    const Index a = mesh_.vertex(t, (k + 1) % 3);
-    const Index b = mesh_.vertex(t, (k + 2) % 3);
-    const Index other = mesh_.neighbor(t, k);
-    const Index d = mesh_.vertex(other, mesh_.oppositeCorner(t, k));
+    const Index c = mesh.vertex(t, k);
+    const Index a = mesh.vertex(t, (k + 1) % 3);
+    const Index b = mesh.vertex(t, (k + 2) % 3);
+    const Index other = mesh.neighbor(t, k);
+    const Index d = mesh.vertex(other, mesh.oppositeCorner(t, k));
     bool joined = false;
-    mesh_.forEachAround(
-        c, [&](Index u, int corner) { joined = joined || mesh_.vertex(u, (corner + 1) % 3) == d; });
-    EXPECT_EQ(mesh_.areJoined(c, d), joined);
-    EXPECT_EQ(mesh_.areJoined(d, c), joined);
-    EXPECT_EQ(mesh_.flip(t, k), !joined);
+    mesh.forEachAround(
+        c, [&](Index u, int corner) { joined = joined || mesh.vertex(u, (corner + 1) % 3) == d; });
+    EXPECT_EQ(mesh.areJoined(c, d), joined);
+    EXPECT_EQ(mesh.areJoined(d, c), joined);
+    EXPECT_EQ(mesh.flip(t, k), !joined);
     if (!joined) {
-      EXPECT_EQ(mesh_.vertex(t, 0), c);
-      EXPECT_EQ(mesh_.vertex(other, 0), c);
-      EXPECT_TRUE(mesh_.areJoined(c, d));
-      EXPECT_FALSE(mesh_.areJoined(a, b));
+      EXPECT_EQ(mesh.vertex(t, 0), c);
+      EXPECT_EQ(mesh.vertex(other, 0), c);
+      EXPECT_TRUE(mesh.areJoined(c, d));
+      EXPECT_FALSE(mesh.areJoined(a, b));
     }
     return !joined;
   }
@@ -139,20 +139,15 @@ public:
     return kind == 0 ? split() : kind == 1 ? merge() : flip();
   }
 
-private:
   Index below(Index bound) {
-    return static_cast<Index>(random_() % static_cast<std::uint64_t>(bound));
+    return static_cast<Index>(random() % static_cast<std::uint64_t>(bound));
   }
   Index triangle() {
-    Index t = below(mesh_.size());
-    while (mesh_.vertex(t, 0) < 0)
-      t = below(mesh_.size());
+    Index t = below(mesh.size());
+    while (mesh.vertex(t, 0) < 0)
+      t = below(mesh.size());
     return t;
   }
-
-  SphereMesh& mesh_;
-  Index vertex_count_;
-  std::mt19937_64 random_;
 };
 
 TEST(SphereMesh, HoldsItsTrianglesInAnyOrder) {
@@ -190,7 +185,7 @@ TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphereAndAreRolledBackToTheLastInd
     mesh.split(0, v);
   expectSound(mesh, n);
   std::mt19937_64 random(5);
-  Moves moves(mesh, n, 6);
+  Moves moves{mesh, n, std::mt19937_64(6)};
   int all_made = 0;
   for (int round = 0; round < 300; ++round) {
     const std::vector<Index> before = stateOf(mesh, n);

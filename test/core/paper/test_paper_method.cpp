@@ -43,39 +43,33 @@ TEST(PaperGraph, JoinsEachPointToItsKNearestInLongUntidyLists) {
 }
 
 TEST(PaperGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
-  Positions points(3, 0);
+  Positions pieces(3, 0);
   UnionFind parts(180);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-40.0, 40.0);
-  const Index pieces = 9;
-  for (Index piece = 0; piece < pieces; ++piece) {
+  for (Index piece = 0; piece < 9; ++piece) {
     Positions part = randomSphere(20, static_cast<std::uint64_t>(piece));
     part.colwise() += Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
-    points = horizontally(points, part);
+    pieces = horizontally(pieces, part);
     for (Index i = 1; i < 20; ++i)
       parts.unite(20 * piece, 20 * piece + i);
   }
-  const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 6), 6);
-  expectConnectedGraphOf(points, result);
-  ASSERT_EQ(result.bridges.size(), static_cast<std::size_t>(pieces) - 1);
-  double total = 0.0;
-  for (const Bridge& bridge : result.bridges) {
-    EXPECT_NE(bridge.from / 20, bridge.to / 20);
-    EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
-    total += bridge.length;
-    EXPECT_EQ(edgesOf(result.graph).count({bridge.from, bridge.to}), 1U);
+  // Pieces, and points without lists, all of which tie.
+  const Positions grid = cubeGrid(5);
+  for (const int k : {6, 0}) {
+    const Positions& points = k > 0 ? pieces : grid;
+    const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, k), 25);
+    expectConnectedGraphOf(points, result);
+    EXPECT_EQ(result.bridges.size(), k > 0 ? 8U : columnCount(grid) - 1);
+    EXPECT_TRUE(k > 0 || result.graph.edgeCount() == result.bridges.size());
+    double total = 0.0;
+    for (const Bridge& bridge : result.bridges) {
+      EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
+      total += bridge.length;
+      EXPECT_EQ(edgesOf(result.graph).count({bridge.from, bridge.to}), 1U);
+    }
+    EXPECT_NEAR(total, shortestJoin(points, k > 0 ? parts : UnionFind(columnCount(grid))), 1e-9);
   }
-  EXPECT_NEAR(total, shortestJoin(points, parts), 1e-9);
-}
-
-TEST(PaperGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
-  const Positions points = cubeGrid(5);  // all ties
-  const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 0), 25);
-  expectConnectedGraphOf(points, result);
-  EXPECT_EQ(result.graph.edgeCount(), static_cast<std::size_t>(points.cols()) - 1);
-  EXPECT_EQ(result.bridges.size(), result.graph.edgeCount());
-  for (const double length : result.graph.lengths)
-    EXPECT_DOUBLE_EQ(length, 0.25);
 }
 
 Graph nearestGraph(const Positions& points, int k) {
