@@ -16,10 +16,8 @@ Pairs pairsOf(const Mesh& mesh) {
 }
 
 /// Whether two triangles, given by their corners, intersect.
-bool meet(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  Mesh mesh{Positions(3, 6), Triangles(3, 2)};
-  mesh.points << a, b;
-  mesh.triangles << 0, 3, 1, 4, 2, 5;
+bool meet(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  Mesh mesh{horizontally(positionsOf(a), positionsOf(b)), Triangles{{0, 3}, {1, 4}, {2, 5}}};
   const bool result = !pairsOf(mesh).empty();
   // The same if they share the numbers of the vertices that are equal.
   for (Index i = 0; i < 3; ++i)
@@ -30,27 +28,20 @@ bool meet(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return result;
 }
 
-Eigen::Matrix3d corners(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                        const Eigen::Vector3d& c) {
-  Eigen::Matrix3d result;
-  result << a, b, c;
-  return result;
-}
-
 // A corner on a grid of neighbouring doubles around the plane z = x + y, tilted so that no product
 // is exact: plain evaluation mistakes most of the grid.
 TEST(SelfIntersection, NeighbouringDoublesAreDistinguished) {
   const double step = std::ldexp(1.0, -52);
   const Eigen::Vector3d a(13, 1, 14);
   const Eigen::Vector3d b(1, 13, 14);
-  const Eigen::Matrix3d tilted = corners(a, b, {0, 0, 0});
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   for (int i = 0; i < 12; ++i)
     for (int j = 0; j < 12; ++j)
       for (int k = 0; k < 24; ++k) {
         const Eigen::Vector3d p(0.5 + i * step, 0.25 + j * step, 0.75 + k * step);
-        ASSERT_EQ(meet(tilted, corners(b, a, p)), k == i + j);  // folded
-        ASSERT_EQ(meet(tilted, corners(p, {1, 1, 20}, {2, 1, 20})), k <= i + j);
-        ASSERT_EQ(meet(tilted, corners(a, p, {12, 1, 20})), k <= i + j);
+        ASSERT_EQ(meet({a, b, zero}, {b, a, p}), k == i + j);  // folded
+        ASSERT_EQ(meet({a, b, zero}, {p, {1, 1, 20}, {2, 1, 20}}), k <= i + j);
+        ASSERT_EQ(meet({a, b, zero}, {a, p, {12, 1, 20}}), k <= i + j);
       }
 }
 
@@ -69,35 +60,30 @@ TEST(SelfIntersection, RoundingSeparatesNothing) {
     const Eigen::Vector3d across = next().cross(along);
     const Eigen::Vector3d a = across + along / 12.0 * (i % 5);
     // The sums of the differences of their corners are multiples of `across`.
-    ASSERT_TRUE(meet(corners({0, 0, 0}, along, a), corners({0, 0, 0}, along / 12.0 * 7.0,
-                                                           a + along / 12.0 * 5.0 - 3.0 * across)));
     const Eigen::Vector3d b = along / 12.0 * 7.0;
-    ASSERT_TRUE(
-        meet(corners(-along, along, a), corners(b, b - across, a - 2.0 * b - 2.0 * across)));
+    ASSERT_TRUE(meet({{0, 0, 0}, along, a}, {{0, 0, 0}, b, a + along / 12.0 * 5.0 - 3.0 * across}));
+    ASSERT_TRUE(meet({-along, along, a}, {b, b - across, a - 2.0 * b - 2.0 * across}));
   }
 }
 
 // --- An oracle: all pairs, separating axes in integers -------------------------------------------
 
 __extension__ using Wide = __int128;
-using WideVector = std::array<Wide, 3>;
-/// Exact below 2^30, as are the cross products of these.
-using Whole = std::array<std::int64_t, 3>;
+using Whole = std::array<Wide, 3>;  ///< for points below 2^30, and the cross products of these
 
-WideVector minus(const Whole& a, const Whole& b) {
-  return {Wide{a[0]} - b[0], Wide{a[1]} - b[1], Wide{a[2]} - b[2]};
+Whole minus(const Whole& a, const Whole& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-WideVector cross(const WideVector& a, const WideVector& b) {
+Whole cross(const Whole& a, const Whole& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-template <typename Vector>
-Wide dot(const WideVector& a, const Vector& b) {
+Wide dot(const Whole& a, const Whole& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-WideVector normalOf(const std::vector<Whole>& t) {
+Whole normalOf(const std::vector<Whole>& t) {
   return cross(minus(t[1], t[0]), minus(t[2], t[0]));
 }
-bool isZero(const WideVector& a) {
+bool isZero(const Whole& a) {
   return a[0] == 0 && a[1] == 0 && a[2] == 0;
 }
 
@@ -105,7 +91,7 @@ bool isZero(const WideVector& a) {
 /// then one of the normals of the facets of their Minkowski difference separates them (S.
 /// Gottschalk, M. Lin and D. Manocha, "OBBTree", 1996). The coordinate axes find most of them.
 bool apart(const std::vector<Whole>& a, const std::vector<Whole>& b) {
-  const auto separates = [&](const WideVector& axis) {
+  const auto separates = [&](const Whole& axis) {
     const auto order = [&](const Whole& p, const Whole& q) { return dot(axis, p) < dot(axis, q); };
     const auto [a_low, a_high] = std::minmax_element(a.begin(), a.end(), order);
     const auto [b_low, b_high] = std::minmax_element(b.begin(), b.end(), order);
@@ -113,18 +99,18 @@ bool apart(const std::vector<Whole>& a, const std::vector<Whole>& b) {
   };
   if (separates({1, 0, 0}) || separates({0, 1, 0}) || separates({0, 0, 1}))
     return true;
-  std::vector<WideVector> sides;
-  std::vector<WideVector> axes;
+  std::vector<Whole> sides;
+  std::vector<Whole> axes;
   for (const auto* hull : {&a, &b}) {
     for (std::size_t i = 0; i < hull->size(); ++i)
       sides.push_back(minus((*hull)[(i + 1) % hull->size()], (*hull)[i]));
     if (hull->size() == 3)
       axes.push_back(normalOf(*hull));
   }
-  std::vector<WideVector> others = axes;
+  std::vector<Whole> others = axes;
   others.insert(others.end(), sides.begin(), sides.end());
-  for (const WideVector& side : sides)
-    for (const WideVector& other : others)
+  for (const Whole& side : sides)
+    for (const Whole& other : others)
       axes.push_back(cross(side, other));
   return std::any_of(axes.begin(), axes.end(), separates);
 }
@@ -147,8 +133,8 @@ bool intersect(const std::vector<Whole>& a, const std::vector<Whole>& b) {
     return !apart(only_a, b) || !apart(a, only_b);
   case 2: {
     // Flat: the two normals over the common side are parallel and point the same way.
-    const WideVector normal_a = normalOf({common[0], common[1], only_a[0]});
-    const WideVector normal_b = normalOf({common[0], common[1], only_b[0]});
+    const Whole normal_a = normalOf({common[0], common[1], only_a[0]});
+    const Whole normal_b = normalOf({common[0], common[1], only_b[0]});
     return isZero(cross(normal_a, normal_b)) && dot(normal_a, normal_b) > 0;
   }
   default:
@@ -194,8 +180,8 @@ TEST(SelfIntersection, PairsAreThoseOfIntegerArithmetic) {
           (3.0 * mesh.points.row(2) - 2.0 * mesh.points.row(1)).tail(n - round % 2);
     for (Index& v : mesh.triangles.reshaped())
       v = std::uniform_int_distribution<Index>(0, n - 1)(random);
-    for (double& x : mesh.points.reshaped())
-      x = x == 0.0 && random() % 2 == 0 ? -0.0 : x;  // which is 0
+    auto half = mesh.points.leftCols(n / 2);
+    half = (half.array() == 0.0).select(-half, half);  // -0 is 0
     const Pairs pairs = bruteForce(mesh);
     count += pairs.size();
     ASSERT_EQ(pairsOf(mesh), pairs);
