@@ -3,6 +3,8 @@
 #include "cloud_surfaces.h"
 #include "helpers.h"
 #include "local_delaunay_graph.h"
+#include "openings.h"
+#include "rotation_system.h"
 
 #include <gtest/gtest.h>
 
@@ -10,15 +12,15 @@
 namespace spherical_param::test {
 
 inline Stars starsOf(const Positions& points, const NeighborLists& lists,
-                     const NeighborSearch& search = {}, const Execution& execution = {}) {
-  return findStars(points, {lists, search}, execution);
+                     const NeighborSearch& search = {}) {
+  return findStars(points, {lists, search}, {});
 }
 
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
-                             const NeighborSearch& search = {}, const Execution& execution = {}) {
-  const Stars stars = starsOf(points, lists, search, execution);
-  const Graph agreed = agreedGraph(points, stars, execution);
-  NeighborGraph result = buildLocalDelaunayGraph(points, stars, agreed, execution);
+                             const NeighborSearch& search = {}) {
+  const Stars stars = starsOf(points, lists, search);
+  const Graph agreed = agreedGraph(points, stars, {});
+  NeighborGraph result = buildLocalDelaunayGraph(points, stars, agreed, {});
   if (points.cols() > 0)
     result.stray_points = strayPoints(points, agreed, stars);
   return result;
@@ -69,6 +71,12 @@ inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triang
 /// The graph of the tangent Delaunay neighbours, by brute force.
 inline NeighborGraph localDelaunayGraph(const Positions& points) {
   return graphOf(points, bruteForceNeighbors(points, 12), bruteForceSearch(points));
+}
+
+inline Openings openingsOf(const Positions& points, const Graph& graph) {
+  const Indexed<double> spacing = nodeSpacings(graph, 1);
+  RotationSystem rotation(points, graph, spacing, 1);
+  return findOpenings(points, graph, spacing, rotation);
 }
 
 }  // namespace spherical_param::test

@@ -1,6 +1,5 @@
 #include "surface_diagnosis.h"
 
-#include "core/topology/topologies.h"
 #include "graphs.h"
 #include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"

@@ -1,7 +1,6 @@
 #include "graphs.h"
 
 #include "open_shapes.h"
-#include "topologies.h"
 
 namespace spherical_param::test {
 namespace {
