@@ -122,9 +122,7 @@ class BadInput(ToolTest):
             "reconstruction in.xyz out.ply -method ball": "option -method: 'ball'",
             "reconstruction in.xyz out.ply -outliers 1001": "option -outliers: '1001'",
             "reconstruction in.xyz out.ply -history_frames 5": "'-history_frames'",
-            "reconstruction in.xyz out.ply -parts some": "'some' is not allowed",
             "reconstruction in.xyz out.ply -parts each -min-points 3": "-min-points",
-            "reconstruction in.xyz out.ply -topology torus": "'torus' is not allowed",
             "scan sphere out.pcd more": "one word too many: 'more'",
             "scan sphere out.pcd -points 3": "option -points: '3'",
             "scan sphere out.pcd -seed -1": "option -seed: '-1'",
@@ -200,7 +198,6 @@ class BadInput(ToolTest):
         self.check_sphere(Mesh("s.ply"))
 
     def test_files_that_cannot_be_read_are_a_failure(self):
-        write("empty.ply", "")
         write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n")
         write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n")
         write("outliers.xyz", "0 0 0\n.1 0 0\n0 .1 0\n9 9 9\n-9 9 0\n")
@@ -210,7 +207,6 @@ class BadInput(ToolTest):
         self.check_refused(FAILED, {
             "reconstruction folder.ply out.ply": "is a directory",
             "reconstruction pipe.ply out.ply": "not a regular file",
-            "reconstruction empty.ply out.ply": "is empty",
             "reconstruction three.xyz out.ply": "at least 4",
             "reconstruction in.xyz out.ply -parts each -min-points 501": "no part has min_points = 501",
             "reconstruction flat.xyz out.ply -topology sphere":
@@ -261,7 +257,7 @@ class BadInput(ToolTest):
         lines = "secret.xyz out.ply", "in.xyz closed/out.ply", "in.xyz kept.ply"
         self.check_refused(FAILED, {f"reconstruction {line}": "Permission denied" for line in lines}, **unprivileged)
 
-    def test_a_full_disk_is_a_failure_and_keeps_the_old_file(self):
+    def test_a_full_disk_or_standard_output_is_a_failure_and_keeps_the_old_file(self):
         full = ": File too large"
         # Room for no output; or for a mesh, but not for more.
         for size, rows in ((4000, {"reconstruction in.xyz kept.ply": f"cannot write 'kept.ply'{full}",
@@ -274,8 +270,6 @@ class BadInput(ToolTest):
                                         f"cannot write 'r.json'{full}",
                                     "remesh in.xyz a.tif -side 65": full})):  # fmt: skip
             self.check_refused(FAILED, rows, **full_disk(size))
-
-    def test_a_full_standard_output_is_a_failure(self):
         self.check_output_refused({"reconstruction in.xyz kept.ply": "standard output",
                                    "scan sphere out.pcd -points 99": "standard output"})  # fmt: skip
 

@@ -152,23 +152,6 @@ class ReconstructionTool(ToolTest):
         run("reconstruction", "two.ply", "out.ply", "-surface", "closed")
         self.assertNotIn("added", Mesh("out.ply"))
 
-    def test_duplicates_and_points_that_are_not_finite_are_left_out_and_counted(self):
-        parts = [[point, self.points[0]] if i % 10 == 0 else [point] for i, point in enumerate(self.points)]
-        write_xyz("in.xyz", [(np.nan, 0, 0)], *parts, [(1, np.inf, 0)])
-        report = reported("in.xyz", "out.ply")
-        self.check_entries(report, {"points": 222, "left_out": {"not_finite": [0, 221]}, "duplicates": 20,
-                                    "vertices": 200, "findings": []})  # fmt: skip
-        self.assertIn("\nleft out  20 duplicates, 2 points that are not finite\n", tool("in.xyz", "out.ply").stdout)
-        self.same(Mesh("out.ply").points, self.points)
-
-    def test_a_time_limit_that_ends_the_work_is_said(self):
-        run("scan", "ellipsoid", "in.xyz", "-points", 800, "-noise", 0.5)
-        ended = reported("in.xyz", "out.ply", "-time-limit", 0, "-parts", "largest")
-        self.check_entries(ended, {"is_out_of_time": True, "options": {"time_limit": 0}})
-        self.assertIn("time limit", str(ended["findings"]))
-        self.check_sphere(Mesh("out.ply"))
-        self.check_entries(reported("in.xyz", "out.ply"), {"is_out_of_time": False, "options": {"time_limit": None}})
-
     def check_types(self, report, example, path=""):
         """The members of an example are there, with values of the same types; of lists the first."""
         self.assertIs(type(report), type(example), path)
@@ -182,7 +165,8 @@ class ReconstructionTool(ToolTest):
         # Steps that smooth the embedding are none to a solution.
         self.check_entries(report, {"points": 200, "triangles": 396, "closed": True, "manifold": True,
                                     "oriented": True, "genus": 0, "diagnosis": {"kind": "closed_genus0"},
-                                    "embedding": {"stop_reason": "unfinished"}})  # fmt: skip
+                                    "embedding": {"stop_reason": "unfinished"}, "is_out_of_time": False,
+                                    "options": {"time_limit": None}})  # fmt: skip
         out = Mesh("out.ply")
         self.assertAlmostEqual(report["measures"]["volume"], volume(out.points, out.triangles), delta=1e-9)
 
@@ -284,7 +268,6 @@ class ReconstructionTool(ToolTest):
         write_xyz("large.xyz", ellipsoid(20000))
         # Each thread takes address space.
         run("reconstruction", "large.xyz", "out.ply", "-threads", 1024, **limited(resource.RLIMIT_AS, 3 << 30))
-        self.assertTrue(os.path.exists("out.ply"))
 
     @UNLESS_SANITIZED
     def test_reported_memory_is_that_of_the_tool_alone(self):
@@ -300,15 +283,19 @@ class ReconstructionTool(ToolTest):
             peaks.append(reported("many.xyz", "out.ply")["peak_memory_bytes"])
         self.assertLess(peaks[1] - peaks[0], 1024 * 30000)
 
-    def test_prints_six_lines_and_warnings_apart(self):
-        write_xyz("noisy.xyz", [(np.nan, 0, 0), (9, 9, 9)], self.points)
-        clean = tool("noisy.xyz", "out.ply")
+    def test_prints_six_lines_with_what_is_left_out_and_warnings_apart(self):
+        write_xyz("noisy.xyz", [(np.nan, 0, 0), (9, 9, 9)], self.points, self.points[::10], [(1, np.inf, 0)])
+        clean = tool("noisy.xyz", "out.ply", "-json", "r.json")
+        self.check_entries(read_json("r.json"), {"points": 223, "duplicates": 20, "vertices": 200, "findings": [],
+                                                 "left_out": {"not_finite": [0, 222], "outliers": [1]}})  # fmt: skip
+        self.same(Mesh("out.ply").points, self.points)
         self.assertEqual([clean.stderr, clean.stdout.count("\n")], ["", 6])
-        self.assertTrue(clean.stdout.startswith("read      noisy.xyz, 202 points\n"
+        self.assertTrue(clean.stdout.startswith("read      noisy.xyz, 223 points\n"
                                                 "verdict   A sound mesh; 1 stray point left out.\n"
                                                 "made      200 vertices, 396 triangles\n"
                                                 "time      "), clean.stdout)  # fmt: skip
-        self.assertIn("\nleft out  1 point that is not finite, 1 stray point\nwritten   out.ply\n", clean.stdout)
+        self.assertIn("\nleft out  20 duplicates, 2 points that are not finite, 1 stray point\n"
+                      "written   out.ply, r.json\n", clean.stdout)  # fmt: skip
         for words in ((), ("-json", "-")):
             self.assertEqual(tool("noisy.xyz", "out.ply", "-topology", "sphere", *words).stderr,
                              "warning: 1 stray point in the mesh: try -topology scan\n")  # fmt: skip
@@ -422,7 +409,9 @@ class PartsOption(ToolTest):
         parts = ", ".join(f"part {part}" for part in range(1, 9))
         self.assertIn(f"{parts}: the time limit ended the work early", done.stderr)
         self.assertEqual(len(Mesh("out.ply").triangles), 8 * 196)
-        self.assertEqual([part["is_out_of_time"] for part in read_json("r.json")["parts"]], 8 * [True])
+        report = read_json("r.json")
+        self.assertEqual([part["is_out_of_time"] for part in report["parts"]], 8 * [True])
+        self.assertEqual(report["options"]["time_limit"], 0)
 
 
 if __name__ == "__main__":

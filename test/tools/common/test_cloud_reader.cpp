@@ -39,19 +39,12 @@ constexpr int point_count = 50000;
 
 Cloud makeCloud(int count) {
   Cloud cloud;
-  for (int i = 0; i < count; ++i) {
-    pcl::PointXYZRGBNormal point;
-    point.x = static_cast<float>(std::sin(i));
-    point.y = static_cast<float>(std::cos(0.7 * i)) * 1e-3F;
-    point.z = static_cast<float>(i) * 0.37F;
-    point.normal_x = static_cast<float>(std::cos(i));
-    point.normal_y = static_cast<float>(std::sin(i));
-    point.normal_z = 0.0F;
-    point.r = static_cast<std::uint8_t>(i % 256);
-    point.g = static_cast<std::uint8_t>(i / 7 % 256);
-    point.b = static_cast<std::uint8_t>(i / 11 % 256);
-    cloud.push_back(point);
-  }
+  for (int i = 0; i < count; ++i)
+    cloud.emplace_back(static_cast<float>(std::sin(i)),
+                       static_cast<float>(std::cos(0.7 * i)) * 1e-3F, static_cast<float>(i) * 0.37F,
+                       static_cast<std::uint8_t>(i % 256), static_cast<std::uint8_t>(i / 7 % 256),
+                       static_cast<std::uint8_t>(i / 11 % 256), static_cast<float>(std::cos(i)),
+                       static_cast<float>(std::sin(i)), 0.0F);
   return cloud;
 }
 
@@ -86,6 +79,23 @@ Cloud readWithPcl(const std::string& path) {
 class CloudReader : public testing::Test {
 protected:
   CloudReader() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
+
+  PointData read(const std::string& name, const std::string& content) const {
+    writeFile(directory.file(name), content);
+    return readCloud(directory.file(name));
+  }
+
+  void expectRefused(const std::string& name, const std::string& content,
+                     const std::string& cause) const {
+    SCOPED_TRACE(name + ": " + cause);
+    try {
+      read(name, content);
+      ADD_FAILURE() << "it was read";
+    } catch (const Failure& failure) {
+      EXPECT_NE(std::string(failure.what()).find(cause), std::string::npos) << failure.what();
+      EXPECT_FALSE(failure.remedy().empty());
+    }
+  }
 
   TemporaryDirectory directory;
 };
@@ -135,41 +145,33 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
     number << +value << " ";
     file += text ? number.str() : bytesOf(&value, sizeof value, big_endian);
   };
-  const auto end_line = [&] { file += text ? "\n" : ""; };
-  for (int i = 0; i < 2; ++i) {
-    add(0.5);
-    add(std::uint8_t{3});
-    for (int k = 0; k < 3; ++k)
-      add(static_cast<std::int16_t>(k));
-    end_line();
-  }
-  for (const pcl::PointXYZRGBNormal& point : cloud) {
-    add(point.x);
-    add(std::uint8_t{1});
-    add(std::int16_t{-3});
-    add(std::uint8_t{7});
-    add(point.y);
-    add(std::int64_t{-12345678901});
-    add(point.z);
-    end_line();
-  }
-  for (std::int32_t t = 0; t < 50000; ++t) {
-    add(static_cast<std::uint8_t>(3));
-    for (std::int32_t k = 0; k < 3; ++k)
-      add(t + k);
-    add(std::uint8_t{1});
-    end_line();
-  }
+  const auto add_line = [&](auto... values) {
+    (add(values), ...);
+    file += text ? "\n" : "";
+  };
+  using Small = std::int16_t;
+  using Byte = std::uint8_t;
+  for (int i = 0; i < 2; ++i)
+    add_line(0.5, Byte{3}, Small{0}, Small{1}, Small{2});
+  for (const pcl::PointXYZRGBNormal& point : cloud)
+    add_line(point.x, Byte{1}, Small{-3}, Byte{7}, point.y, std::int64_t{-12345678901}, point.z);
+  for (std::int32_t t = 0; t < 50000; ++t)
+    add_line(Byte{3}, t, t + 1, t + 2, Byte{1});
   return file;
+}
+
+std::string plyOf(const std::string& format, const std::string& count, const std::string& data,
+                  const std::string& further = "") {
+  return "ply\nformat " + format + " 1.0\nelement vertex " + count +
+         "\nproperty float x\nproperty float y\nproperty float z\n" + further + "end_header\n" +
+         data;
 }
 
 TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
   const Cloud& cloud = largeCloud();
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
-    const std::string path = directory.file("a.ply");
-    writeFile(path, plyOf(cloud, format));
-    const PointData data = readCloud(path);
+    const PointData data = read("a.ply", plyOf(cloud, format));
     expectSame(data, cloud, false);
     ASSERT_EQ(data.scalars.size(), 2U);
     EXPECT_EQ(data.scalars[0].name, "quality");
@@ -179,49 +181,36 @@ TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
 
 TEST_F(CloudReader, CoordinatesAreOfAnyNumericType) {
   const std::string bytes("\1\1\5\0\0\0\0\0\0\0\xff", 11);
-  const std::string ply = directory.file("a.ply");
-  const std::string pcd = directory.file("a.pcd");
-  writeFile(ply, "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty short "
-                 "x\nproperty uint64 y\nproperty char z\nend_header\n" +
-                     bytes);
-  writeFile(pcd, "FIELDS x y z\nSIZE 2 8 1\nTYPE I U I\nWIDTH 1\nDATA binary\n" + bytes);
-  for (const std::string& path : {ply, pcd})
-    EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{257.0, 5.0, -1.0}}));
+  const std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty short "
+                          "x\nproperty uint64 y\nproperty char z\nend_header\n";
+  const std::string pcd = "FIELDS x y z\nSIZE 2 8 1\nTYPE I U I\nWIDTH 1\nDATA binary\n";
+  for (const PointData& data : {read("a.ply", ply + bytes), read("a.pcd", pcd + bytes)})
+    EXPECT_EQ(data.points, (std::vector<Point>{{257.0, 5.0, -1.0}}));
 }
 
 TEST_F(CloudReader, PointsInNoFaceAreNotedUnlessTheFacesMakeNoSense) {
-  const std::string path = directory.file("a.ply");
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
     const std::string file = plyOf(makeCloud(50005), format);  // the faces have 50,002 points
-    writeFile(path, file);
-    const PointData data = readCloud(path);
-    EXPECT_EQ(data.unused, (std::vector<Index>{50002, 50003, 50004}));
-    writeFile(path, file.substr(0, file.size() - 20));
-    EXPECT_TRUE(readCloud(path).unused.empty());
-    writeFile(path, plyOf(makeCloud(1000), format));  // they have points that are not there
-    EXPECT_TRUE(readCloud(path).unused.empty());
+    EXPECT_EQ(read("a.ply", file).unused, (std::vector<Index>{50002, 50003, 50004}));
+    EXPECT_TRUE(read("a.ply", file.substr(0, file.size() - 20)).unused.empty());
+    // Faces have points that are not there.
+    EXPECT_TRUE(read("a.ply", plyOf(makeCloud(1000), format)).unused.empty());
   }
-}
-
-TEST_F(CloudReader, FacesWithOtherPointsSayNothingOfThoseThatAreNotUsed) {
-  const std::string path = directory.file("a.ply");
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_index\n";
   for (const auto& [corner, unused] :
-       std::map<std::string, std::vector<Index>>{{"2", {3, 4}}, {"7", {}}, {"-2", {}}, {"x", {}}}) {
-    writeFile(path, "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
-                    "y\nproperty float z\nelement face 1\nproperty list uchar int "
-                    "vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 1 " +
-                        corner + "\n");
-    EXPECT_EQ(readCloud(path).unused, unused) << corner;
-  }
+       std::map<std::string, std::vector<Index>>{{"2", {3, 4}}, {"7", {}}, {"-2", {}}, {"x", {}}})
+    EXPECT_EQ(read("a.ply", plyOf("ascii", "5", points + "3 0 1 " + corner + "\n", face)).unused,
+              unused)
+        << corner;
 }
 
 TEST_F(CloudReader, TheViewpointOfPcdIsTheOriginOnlyWithRowsOrIfItIsApart) {
   const auto viewpoint_of = [&](const std::string& header, double x) {
-    const std::string path = directory.file("a.pcd");
-    writeFile(path, "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + header +
-                        "POINTS 2\nDATA ascii\n-1 -1 -1\n" + std::to_string(x) + " 1 1\n");
-    return readCloud(path).viewpoint;
+    return read("a.pcd", "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + header +
+                             "POINTS 2\nDATA ascii\n-1 -1 -1\n" + std::to_string(x) + " 1 1\n")
+        .viewpoint;
   };
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 1 2 -3 1 0 0 0\n", 1.0),
             (Point{1.0, 2.0, -3.0}));
@@ -250,16 +239,6 @@ std::string xyzPcd(const std::string& points, const std::string& data) {
   return pcdOf("x y z", "4 4 4", "F F F", points, data);
 }
 
-void expectRefused(const std::string& path, const std::string& cause) {
-  try {
-    readCloud(path);
-    ADD_FAILURE() << path << " was read";
-  } catch (const Failure& failure) {
-    EXPECT_NE(std::string(failure.what()).find(cause), std::string::npos) << failure.what();
-    EXPECT_FALSE(failure.remedy().empty());
-  }
-}
-
 TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   const Cloud& cloud = largeCloud();
   ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
@@ -286,8 +265,7 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
            {"a.xyz", text, text.rfind(' '), in_line + " has 2 columns"},
            {"a.obj", obj, obj.rfind(' '), in_line + " has no three numbers"}}) {
     ASSERT_GT(content.size(), std::size_t{1} << 20U);
-    writeFile(directory.file(name), content.substr(0, kept));
-    expectRefused(directory.file(name), cause);
+    expectRefused(name, content.substr(0, kept), cause);
   }
 }
 
@@ -314,13 +292,6 @@ std::string sizesAnd(const std::string& packed, std::uint32_t size) {
 
 std::string packedPcd(const std::string& points, std::uint32_t size, const std::string& packed) {
   return xyzPcd(points, "binary_compressed\n" + sizesAnd(packed, size));
-}
-
-std::string plyOf(const std::string& format, const std::string& count, const std::string& data,
-                  const std::string& further = "") {
-  return "ply\nformat " + format + " 1.0\nelement vertex " + count +
-         "\nproperty float x\nproperty float y\nproperty float z\n" + further + "end_header\n" +
-         data;
 }
 
 TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
@@ -371,26 +342,16 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.xyz", "1 2 3\n4 5 6 7\n", "line 2 has 4 columns instead of 3"},
       {"a.xyz", "1 2 3\n4 x 6\n", "line 2 has no number in column 2, but 'x'"},
       {"a.xyz", "7 1 2 3\n8 4 5 6\n9 7 8 9\n10 1 1 1\n", "first column counts the lines"},
-      {"a.obj",
-       "\xfe\xff"
-       "v 1 2 3\n",
-       "UTF-16"},
+      {"a.obj", std::string("\xfe\xff") + "v 1 2 3\n", "UTF-16"},
       {"a.xyz", "1 2 3\r4 5 6\r", "do not end in LF"},
-      {"a.txt",
-       "\xff\xfe"
-       "1",
-       "UTF-16"},
+      {"a.txt", std::string("\xff\xfe") + "1", "UTF-16"},
       {"a.pts", "10\n20\n0 0 0\n1 2 3\n", "as PTX files do"},
       {"a.pts", "3\n0 0 0\n1 2 3\n", "fewer points than its first line"},
       {"a.pcd", xyzPcd("1", "ascii\n1,5 2,5\n"), "no number for 'x'"},
-      {"a.xyz", "1 2 3\n4 5\n", "line 2"},
       {"a.txt", "# nothing\n# here\n", "no points"},
   };
-  for (const Case& test : cases) {
-    SCOPED_TRACE(std::string(test.name) + ": " + test.cause);
-    writeFile(directory.file(test.name), test.content);
-    expectRefused(directory.file(test.name), test.cause);
-  }
+  for (const Case& test : cases)
+    expectRefused(test.name, test.content, test.cause);
 }
 
 TEST_F(CloudReader, ColoursAreFoundByTheirNamesAndIgnoredIfIncomplete) {
@@ -401,18 +362,15 @@ TEST_F(CloudReader, ColoursAreFoundByTheirNamesAndIgnoredIfIncomplete) {
       {"a.ply", plyOf("ascii", "1", "0 0 0 1\n", alpha), {}},
       {"a.pcd", pcdOf("x y z red", "4 4 4 1", "F F F U", "1", "ascii\n1 2 3 4\n"), {}}};
   for (const auto& [name, content, colors] : cases) {
-    writeFile(directory.file(name), content);
-    const PointData data = readCloud(directory.file(name));
+    const PointData data = read(name, content);
     EXPECT_EQ(data.points.size(), 1U);
     EXPECT_EQ(data.colors, colors);
   }
 }
 
 TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
-  const std::string path = directory.file("a.pcd");
   const std::string zeros("\x00\x00\xe0\x02\x00", 5);  // one byte, then 11 times the same
-  writeFile(path, packedPcd("1", 12, zeros));
-  EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{0.0F, 0.0F, 0.0F}}));
+  EXPECT_EQ(read("a.pcd", packedPcd("1", 12, zeros)).points, (std::vector<Point>{{0.0, 0.0, 0.0}}));
   const std::vector<std::string> broken = {
       zeros.substr(0, 2),                             // too few
       zeros.substr(0, 4),                             // a reference that is cut
@@ -425,13 +383,11 @@ TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
       std::string("\x0c" + std::string(13, '\x01')),  // more literals than points
       "",
   };
-  for (const std::string& packed : broken) {
-    writeFile(path, packedPcd("1", 12, packed));
-    EXPECT_THROW(readCloud(path), Failure) << testing::PrintToString(packed);
-  }
+  for (const std::string& packed : broken)
+    EXPECT_THROW(read("a.pcd", packedPcd("1", 12, packed)), Failure)
+        << testing::PrintToString(packed);
   // No memory is taken for what so few bytes cannot hold.
-  writeFile(path, packedPcd("300000000", 3600000000U, zeros));
-  expectRefused(path, "too short for the points");
+  expectRefused("a.pcd", packedPcd("300000000", 3600000000U, zeros), "too short for the points");
 }
 
 // Counts that the size of the file does not limit.
@@ -447,13 +403,11 @@ TEST_F(CloudReader, PaddingTakesNoMemoryAndElementsWithoutPropertiesNoTime) {
   std::string file = pcdOf(padded("_ ", "x y z"), padded("8 ", "4 4 4"), padded("U ", "F F F"), "1",
                            "binary_compressed\n" + packed);
   file.insert(file.find("WIDTH"), "COUNT " + padded("1073741824 ", "1 1 1") + "\n");
-  writeFile(directory.file("a.pcd"), file);
-  EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0, 0.0, 0.0}}));
+  EXPECT_EQ(read("a.pcd", file).points, (std::vector<Point>{{0.0, 0.0, 0.0}}));
 
   file = plyOf("ascii", "1", "0 0 0\n");
   file.insert(file.find("element vertex"), "element nothing 1073741824\n");
-  writeFile(directory.file("a.ply"), file);
-  EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);
+  EXPECT_EQ(read("a.ply", file).points.size(), 1U);
 }
 
 TEST_F(CloudReader, EveryFileOfTheFuzzersIsReadOrRefused) {
@@ -464,10 +418,8 @@ TEST_F(CloudReader, EveryFileOfTheFuzzersIsReadOrRefused) {
       continue;
     ++count;
     SCOPED_TRACE(entry.path());
-    const std::string path = directory.file("a." + kind);
-    writeFile(path, readFile(entry.path().string()));
     try {
-      const PointData data = readCloud(path);
+      const PointData data = read("a." + kind, readFile(entry.path().string()));
       EXPECT_FALSE(data.points.empty());
       EXPECT_TRUE(data.normals.empty() || data.normals.size() == data.points.size());
       EXPECT_TRUE(data.colors.empty() || data.colors.size() == data.points.size());

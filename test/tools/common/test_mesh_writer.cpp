@@ -32,6 +32,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -77,10 +78,11 @@ void writeTo(const std::string& path, const TriangleMesh& mesh, Encoding encodin
   file.commit();
 }
 
-template <typename Values>
-Point toPoint(const Values& values) {
-  return {static_cast<double>(values[0]), static_cast<double>(values[1]),
-          static_cast<double>(values[2])};
+/// The first values as numbers of another type.
+template <typename Number, typename Values>
+std::array<Number, 3> threeOf(const Values& values) {
+  return {static_cast<Number>(values[0]), static_cast<Number>(values[1]),
+          static_cast<Number>(values[2])};
 }
 
 TriangleMesh readWithPcl(const std::string& path) {
@@ -92,15 +94,13 @@ TriangleMesh readWithPcl(const std::string& path) {
   pcl::fromPCLPointCloud2(file.cloud, cloud);
   TriangleMesh mesh;
   for (const auto& point : cloud) {
-    mesh.vertices.points.push_back(toPoint(point.data));
+    mesh.vertices.points.push_back(threeOf<double>(point.data));
     mesh.vertices.normals.push_back({point.normal_x, point.normal_y, point.normal_z});
     mesh.vertices.colors.push_back({point.r, point.g, point.b, 255});
   }
   for (const pcl::Vertices& polygon : file.polygons) {
     EXPECT_EQ(polygon.vertices.size(), 3U);
-    mesh.triangles.push_back({static_cast<std::int32_t>(polygon.vertices[0]),
-                              static_cast<std::int32_t>(polygon.vertices[1]),
-                              static_cast<std::int32_t>(polygon.vertices[2])});
+    mesh.triangles.push_back(threeOf<std::int32_t>(polygon.vertices));
   }
   return mesh;
 }
@@ -110,9 +110,9 @@ TriangleMesh meshOf(vtkPolyData& data) {
   auto* const normals = data.GetPointData()->GetNormals();
   auto* const colors = vtkUnsignedCharArray::SafeDownCast(data.GetPointData()->GetScalars());
   for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) {
-    mesh.vertices.points.push_back(toPoint(data.GetPoint(i)));
+    mesh.vertices.points.push_back(threeOf<double>(data.GetPoint(i)));
     if (normals != nullptr)
-      mesh.vertices.normals.push_back(toFloat(toPoint(normals->GetTuple3(i))));
+      mesh.vertices.normals.push_back(threeOf<float>(normals->GetTuple3(i)));
     if (colors != nullptr)
       mesh.vertices.colors.push_back({colors->GetTypedComponent(i, 0),
                                       colors->GetTypedComponent(i, 1),
@@ -122,9 +122,7 @@ TriangleMesh meshOf(vtkPolyData& data) {
   for (vtkIdType i = 0; i < data.GetPolys()->GetNumberOfCells(); ++i) {
     data.GetPolys()->GetCellAtId(i, cell);
     EXPECT_EQ(cell->GetNumberOfIds(), 3);
-    mesh.triangles.push_back({static_cast<std::int32_t>(cell->GetId(0)),
-                              static_cast<std::int32_t>(cell->GetId(1)),
-                              static_cast<std::int32_t>(cell->GetId(2))});
+    mesh.triangles.push_back(threeOf<std::int32_t>(cell->GetPointer(0)));
   }
   return mesh;
 }
@@ -188,14 +186,12 @@ TriangleMesh readOff(const std::string& path) {
     std::istringstream words(line);
     const std::vector<float> n{std::istream_iterator<float>(words), {}};
     if (n.size() == 4) {
-      mesh.triangles.push_back({static_cast<std::int32_t>(n[1]), static_cast<std::int32_t>(n[2]),
-                                static_cast<std::int32_t>(n[3])});
+      mesh.triangles.push_back(threeOf<std::int32_t>(&n[1]));
     } else if (n.size() == 10) {
-      mesh.vertices.points.push_back(toPoint(n));
+      mesh.vertices.points.push_back(threeOf<double>(n));
       mesh.vertices.normals.push_back({n[3], n[4], n[5]});
-      mesh.vertices.colors.push_back(
-          {static_cast<std::uint8_t>(n[6]), static_cast<std::uint8_t>(n[7]),
-           static_cast<std::uint8_t>(n[8]), static_cast<std::uint8_t>(n[9])});
+      const auto [red, green, blue] = threeOf<std::uint8_t>(&n[6]);
+      mesh.vertices.colors.push_back({red, green, blue, static_cast<std::uint8_t>(n[9])});
     }
   }
   return mesh;

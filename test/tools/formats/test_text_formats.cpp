@@ -14,12 +14,21 @@
 namespace spherical_param::tools {
 namespace {
 
+PointData read(const std::string& extension, const std::string& text,
+               const std::vector<std::string>& columns = {}) {
+  const tool_test::TemporaryDirectory directory;
+  tool_test::writeFile(directory.file("a." + extension), text);
+  return readCloud(directory.file("a." + extension), {}, columns);
+}
+
 struct Case {
   const char* name;
   const char* extension;
   std::string text;
   std::string further = "";  ///< n: it has normals, c: colours
 };
+
+const std::string byte_order_mark = "\xef\xbb\xbf";
 
 /// Each holds the points (1, 2, 3) and (4.5, -5, 6), with normals x and z and colours red and blue.
 const std::vector<Case> cases = {
@@ -55,15 +64,12 @@ const std::vector<Case> cases = {
     {"SeparatorOfExcel", "csv", "sep=;\n1,0;2,0;3,0\n4,5;-5;6\n"},
     {"ObjNamedText", "txt", "v 1 2 3\nv 4.5 -5 6\n"},
     {"PcdWithByteOrderMark", "pcd",
-     "\xef\xbb\xbf"
-     "FIELDS x y z\nWIDTH 2\nDATA ASCII\n1 2 3\n4.5 -5 6\n"},
-    {"ByteOrderMark", "xyz",
-     "\xef\xbb\xbf"
-     "1 2 3\n4.5 -5 6\n"},
+     byte_order_mark + "FIELDS x y z\nWIDTH 2\nDATA ASCII\n1 2 3\n4.5 -5 6\n"},
+    {"ByteOrderMark", "xyz", byte_order_mark + "1 2 3\n4.5 -5 6\n"},
     {"ExponentsOfFortran", "xyz", "1.0D+00 2d0 0.3D1\n4.5 -5 6\n"},
     {"TextOfUnknownExtension", "dat", "1 2 3\n4.5 -5 6\n"},
     {"ObjOfUnknownExtension", "dat", "# a\nv 1 2 3\nv 4.5 -5 6\n"},
-    {"ObjWithByteOrderMark", "obj", "\xef\xbb\xbfv 1 2 3\nv 4.5 -5 6\n"},
+    {"ObjWithByteOrderMark", "obj", byte_order_mark + "v 1 2 3\nv 4.5 -5 6\n"},
     {"PlyWithListsWordsAndLongIntegers", "ply",
      "ply\nformat ascii 1.0\nelement vertex 2\nproperty list uchar int views\nproperty float X\n"
      "property string name\nproperty int64 time\nproperty float Y\nproperty float "
@@ -86,12 +92,9 @@ const std::vector<Case> cases = {
 };
 
 TEST(TextClouds, PointsNormalsAndColoursAreFoundInEveryNotation) {
-  const tool_test::TemporaryDirectory directory;
   for (const Case& test : cases) {
     SCOPED_TRACE(test.name);
-    const std::string path = directory.file(std::string("a.") + test.extension);
-    tool_test::writeFile(path, test.text);
-    const PointData data = readCloud(path);
+    const PointData data = read(test.extension, test.text);
     EXPECT_EQ(data.points, (std::vector<Point>{{1.0, 2.0, 3.0}, {4.5, -5.0, 6.0}}));
     const std::vector<Normal> normals = {{1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
     EXPECT_EQ(data.normals, test.further[0] == 'n' ? normals : std::vector<Normal>());
@@ -99,13 +102,6 @@ TEST(TextClouds, PointsNormalsAndColoursAreFoundInEveryNotation) {
     EXPECT_EQ(data.colors,
               test.further.find('c') != std::string::npos ? colors : std::vector<Color>());
   }
-}
-
-PointData read(const std::string& extension, const std::string& text,
-               const std::vector<std::string>& columns = {}) {
-  const tool_test::TemporaryDirectory directory;
-  tool_test::writeFile(directory.file("a." + extension), text);
-  return readCloud(directory.file("a." + extension), {}, columns);
 }
 
 TEST(TextClouds, ColumnsCanBeNamedAndAreSaid) {
@@ -150,11 +146,9 @@ TEST(TextClouds, WhatIsNoNumberToOtherProgramsIsNotFinite) {
 }
 
 TEST(TextClouds, NumbersBeyondTheRangeOfDoubleAreInfiniteOrZero) {
-  const tool_test::TemporaryDirectory directory;
   const std::string zeros(400, '0');
-  tool_test::writeFile(directory.file("a.xyz"),
-                       "1" + zeros + " -1" + zeros + ".5 0." + zeros + "1\n1e400 -1e+400 1e-400\n");
-  const PointData data = readCloud(directory.file("a.xyz"));
+  const PointData data =
+      read("xyz", "1" + zeros + " -1" + zeros + ".5 0." + zeros + "1\n1e400 -1e+400 1e-400\n");
   ASSERT_EQ(data.points.size(), 2U);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const Point& point : data.points)
