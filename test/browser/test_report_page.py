@@ -321,8 +321,7 @@ class ReportPage(unittest.TestCase):
         self.move_slider(count)
         self.assertEqual(self.changed(result), ())
         self.element("play").click()
-        WebDriverWait(self.browser, 60).until(
-            lambda _: 0 < int(self.element("frame").get_property("value")) < count)
+        WebDriverWait(self.browser, 60).until(lambda _: 0 < int(self.element("frame").get_property("value")) < count)
         self.element("play").click()
         self.assertEqual(self.text("play"), "Play")
 

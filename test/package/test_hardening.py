@@ -31,8 +31,7 @@ with tempfile.TemporaryDirectory(dir=scratch) as prefix:
         files += 1
         text = subprocess.run(["readelf", "-W", "-h", "-l", "-d", "--dyn-syms", path], check=True,
                               capture_output=True, text=True, env={"LC_ALL": "C"}).stdout
-        faults += [f"{path.name}: not {what}" for what, pattern in wanted.items()
-                   if not re.search(pattern, text)]
+        faults += [f"{path.name}: not {what}" for what, pattern in wanted.items() if not re.search(pattern, text)]
         faults += [f"{path.name}: looks for libraries in {place}"
                    for found in re.findall(places, text) for place in found.split(":")
                    if not place.startswith("$ORIGIN")]

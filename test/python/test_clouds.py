@@ -73,8 +73,7 @@ class Clouds(shapes.InFolder):
         plain = sp.reconstruct(file, columns="x,y,z,time")
         self.assertIsNone(plain.colors)
         self.assertEqual([*plain._export_scalars()], ["time"])
-        for cloud, columns, cause in ((file, "x,y", "no x, y and z"),
-                                      (self.points, "x,y,z", "columns are of a file")):  # fmt: skip
+        for cloud, columns, cause in ((file, "x,y", "no x, y and z"), (self.points, "x,y,z", "columns are of a file")):
             with self.assertRaisesRegex(sp.InvalidInput, cause):
                 sp.reconstruct(cloud, columns=columns)
 

@@ -126,8 +126,7 @@ class Maps(unittest.TestCase):
     def test_meshes_without_a_map_to_one_sphere_are_refused(self):
         handle = sp.reconstruct(shapes.torus(24))
         remedy = 'no map to one sphere: it has 1 handle; .*handles="none"'
-        for function in (sp.sphere_map, sp.measure_map_distortion, sp.remesh,
-                         lambda mesh: sp.morph(self.map, mesh)):  # fmt: skip
+        for function in (sp.sphere_map, sp.measure_map_distortion, sp.remesh, lambda mesh: sp.morph(self.map, mesh)):
             with self.assertRaisesRegex(sp.InvalidInput, remedy):
                 function(handle)
         with self.assertRaisesRegex(sp.InvalidInput, "its genus is 1; cut its handles"):

@@ -84,8 +84,6 @@ class ReconstructionTool(ToolTest):
         self.assertNotIn("nx", sphere)
         # The rounding of three floats.
         self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
-        run("reconstruction", "in.ply", "text.ply", "-ascii")
-        self.assertIn("format ascii", pathlib.Path("text.ply").read_text())
 
     def test_what_further_columns_hold_is_said_and_comes_along(self):
         others = [(i % 7 + 0.5, 10, 20, 30) for i in range(200)]
@@ -100,8 +98,6 @@ class ReconstructionTool(ToolTest):
         self.assertNotIn("red", Mesh("out.ply"))
         self.assertEqual(Mesh("out.ply")["nz"][0], 30)
         self.assertIn("out.stl (without colours)\n", run("reconstruction", "in.pts", "out.stl"))
-        self.check_refused(2, {"reconstruction in.ply out.stl -columns x,y,z": "-columns",
-                               "reconstruction in.pts out.stl -columns x,y,q": "no x, y and z"})  # fmt: skip
 
     def test_normals_that_are_null_are_replaced_by_those_of_the_mesh(self):
         write_ply("in.ply", self.points, 0 * self.points)

@@ -40,8 +40,7 @@ def _write(path, entries):
 
 
 def _find(folders):
-    paths = sorted(path for folder in folders for path in folder.iterdir()
-                   if path.suffix in (".pcd", ".ply", ".xyz"))  # fmt: skip
+    paths = sorted(path for folder in folders for path in folder.iterdir() if path.suffix in (".pcd", ".ply", ".xyz"))
     clouds = {path.stem: path for path in paths}
     for path in paths:
         if clouds[path.stem] is not path:
@@ -53,7 +52,7 @@ def _measure(context, path):
     """The numbers of the default's mesh, and why it is not clean, or ""."""
     mesh = context.work / f"clean_{path.stem}.ply"
     try:
-        told = context.programs.reconstruct(Cloud(path.stem, path), mesh, threads=1)[1]
+        told = context.programs.reconstruct(Cloud(path.stem, path), mesh, "-threads", 1)[1]
         is_sound = (told["usable"] and not told["failures"]
                     and not any(found["is_fault"] for found in told["findings"]))  # fmt: skip
         # The referee also compares the surfaces with each other.

@@ -31,8 +31,7 @@ RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one threa
 PARAMETERS = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
 
 # Scans, quick and in full.
-GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety",
-                                "max", "igea"))  # fmt: skip
+GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety", "max", "igea"))
 WITH_PEERS = (("animal_2000",), ("hand_10000",))
 RACES = (("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))
 

@@ -55,8 +55,7 @@ ROWS = [
 def _read(row, work):
     path = pathlib.Path(row.source)
     if not path.is_file():
-        raise Failure(f"there is no file '{path}'",
-                      "run tools/setup.sh gallery where dpkg installs documentation")  # fmt: skip
+        raise Failure(f"there is no file '{path}'", "run tools/setup.sh gallery where dpkg installs documentation")
     if path.suffix == ".pcd":
         import pcl  # of a package with clouds
 

@@ -118,7 +118,7 @@ def _maps_by_methods(context, name, cloud, methods, columns):
     mesh, sphere = context.work / f"{name}.ply", context.work / f"{name}_sphere.ply"
     rows = []
     for method, options in methods.items():
-        report = context.programs.reconstruct(cloud, mesh, *options, sphere=sphere)[1]
+        report = context.programs.reconstruct(cloud, mesh, *options, "-sphere", sphere)[1]
         rows.append({"method": method, **context.programs.measure(mesh, cloud, sphere),
                      "residual": f"{report['embedding']['residual']:.1e}",
                      "outside": 100.0 * report["diagnosis"]["edges_outside_graph"]})  # fmt: skip

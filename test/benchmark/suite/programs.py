@@ -111,18 +111,14 @@ class Programs:
         cloud = Cloud(name, self.work / f"{name}.ply", self.work / f"{shape}_truth.ply" if truth else None)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
             command = [self.find("pcl_spherical_param_scan"), shape, cloud.points]
-            command += ["-points", points] if points else []
-            command += ["-noise", noise] if noise else []
-            command += ["-truth", cloud.truth] if truth else []
+            for option, value in (("-points", points), ("-noise", noise), ("-truth", cloud.truth)):
+                command += [option, value] if value else []
             require(command)
         return cloud
 
-    def reconstruct(self, cloud, mesh, *options, sphere=None, threads=None):
+    def reconstruct(self, cloud, mesh, *options):
         """Runs the tool: the process, and the tool's report."""
-        command = [self.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options]
-        command += ["-sphere", sphere] if sphere else []
-        command += ["-threads", threads] if threads else []
-        process = require(command)
+        process = require([self.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options])
         return process, json.loads(process.output)
 
     def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):

@@ -35,12 +35,12 @@ BUDGET = [("stage", "stage"), ("one", "one thread [ns a point]", 0), ("all", "al
           ("what", "what each point needs")]  # fmt: skip
 
 
-def _measure(context, cloud, repeats, threads=None):
+def _measure(context, cloud, repeats, *options):
     """Medians of the stages' seconds, of the whole process, and its peak memory."""
     mesh = context.work / "scaling.ply"
     processes, stages = [], []
     while len(processes) < repeats and (not processes or processes[-1] < 5.0):
-        process, report = context.programs.reconstruct(cloud, mesh, threads=threads)
+        process, report = context.programs.reconstruct(cloud, mesh, *options)
         processes.append(process.seconds)
         stages.append(stage_seconds(report))
     return {"points": report["vertices"], "seconds": statistics.median(processes),
@@ -59,8 +59,7 @@ def growth(context):
         cloud = context.programs.scan(f"head_{n}", truth=False)
         row = _measure(context, cloud, context.choose(1, 3))
         cloud.points.unlink()
-        row.update(throughput=n / row["seconds"], bytes=row["peak"] / n,
-                   unit=1e9 * row["seconds"] / (n * math.log2(n)))  # fmt: skip
+        row.update(throughput=n / row["seconds"], bytes=row["peak"] / n, unit=1e9 * row["seconds"] / (n * math.log2(n)))
         rows.append(row)
     context.report.text("""
         ### Over the number of points
@@ -85,7 +84,7 @@ def budget(context):
     """What each stage takes, beside the least that it could take."""
     cloud = context.programs.scan(context.choose("head_10000", "igea"), truth=False)
     threads = len(os.sched_getaffinity(0))
-    single, full = (_measure(context, cloud, context.choose(1, 5), count) for count in (1, threads))
+    single, full = (_measure(context, cloud, context.choose(1, 5), "-threads", count) for count in (1, threads))
     bandwidth = _bandwidth()
     rows = []
     for stage, (moved, steps, what) in LEAST.items():
