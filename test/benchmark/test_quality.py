@@ -121,8 +121,7 @@ class Quality(unittest.TestCase):
     def test_distortion_of_a_stretched_octahedron(self):
         mesh, sphere = octahedron(), octahedron()
         mesh.points[4, 2] = 2
-        # The triangles at +z are stretched by sqrt(3) across their side of length sqrt(2), the others are as
-        # they were.
+        # The triangles at +z are stretched by sqrt(3) across their side of length sqrt(2), the others are as they were.
         large, small = 0.5 * 2**0.5 * 4.5**0.5, 0.5 * 2**0.5 * 1.5**0.5
         found = REFEREE.distortion(mesh, sphere)
         self.assertAlmostEqual(found["angle"], (large * 3**0.5 + small) / (large + small))

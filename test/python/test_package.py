@@ -105,15 +105,11 @@ class Files(shapes.InFolder):
             mesh.write(str(self.folder / "m.obj"))
             np.testing.assert_array_equal(shapes.faces_of(self.folder / "m.obj").reshape(-1, 3), mesh.triangles)
 
-    def test_every_format_is_written_whole_or_not_at_all(self):
-        for mesh, names in (
-            (self.mesh, ("m.ply", "m.obj", "m.vtk", "m.glb", "m.stl", "m.off")),
-            (self.even, ("m.ply", "m.pcd", "m.obj", "m.vtk", "m.xyz", "m.txt")),
-        ):
-            for name in names:
-                mesh.write(self.folder / name)
-                self.assertGreater((self.folder / name).stat().st_size, 3 * 4 * len(mesh.vertices))
-                (self.folder / name).unlink()
+    def test_a_file_is_written_whole_or_not_at_all(self):
+        for mesh, name in ((self.mesh, "m.glb"), (self.even, "m.xyz")):
+            mesh.write(self.folder / name)
+            self.assertGreater((self.folder / name).stat().st_size, 3 * 4 * len(mesh.vertices))
+            (self.folder / name).unlink()
         for name in ("mesh.docx", "mesh", "mesh.pcd"):
             with self.assertRaisesRegex(sp.InvalidInput, "; use one of .ply"):
                 self.mesh.write(self.folder / name)

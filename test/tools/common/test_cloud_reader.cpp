@@ -360,6 +360,9 @@ TEST_F(CloudReader, ColoursAreFoundByTheirNamesAndIgnoredIfIncomplete) {
   const std::vector<std::tuple<std::string, std::string, std::vector<Color>>> cases = {
       {"a.ply", plyOf("ascii", "1", "0 0 0 1 2 3 4\n", alpha + others), {{4, 3, 2, 1}}},
       {"a.ply", plyOf("ascii", "1", "0 0 0 1\n", alpha), {}},
+      {"a.pcd",
+       pcdOf("x y z rgb", "4 4 4 4", "F F F U", "1", "ascii\n1 2 3 66051\n"),
+       {{1, 2, 3, 255}}},
       {"a.pcd", pcdOf("x y z red", "4 4 4 1", "F F F U", "1", "ascii\n1 2 3 4\n"), {}}};
   for (const auto& [name, content, colors] : cases) {
     const PointData data = read(name, content);
