@@ -57,7 +57,7 @@ class EveryTool(ToolTest):
         write_cloud("other.ply", 250)
         write("pairs.txt", "3 5\n290 240\n")
 
-    def test_help_lists_every_option_and_help_and_version_succeed(self):
+    def test_help_lists_every_option_those_of_experts_last_and_version_succeeds(self):
         self.assertGreater(len(OPTIONS), 20)
         for tool, _ in each():
             with self.subTest(tool):
@@ -65,6 +65,13 @@ class EveryTool(ToolTest):
                 for option in options_of(tool):
                     self.assertIn(f"\n  -{option.replace('_', '-')} ", said)
                 self.assertNotIn("-history", said)
+                experts = said.index("\nExpert options:\n")
+                for option in ("surface", options_of(tool)[0]):
+                    self.assertLess(said.index(f"\n  -{option} "), experts)
+                self.assertGreater(said.index("\n  -ascii "), experts)
+                brief = run(tool, "--help")
+                self.assertNotIn("\n  -ascii ", brief)
+                self.assertIn("-h expert", brief)
                 self.assertTrue(run(tool, "--version").startswith(f"pcl_spherical_param_{tool} "))
 
     def test_report_is_alone_on_standard_output_and_has_every_option(self):

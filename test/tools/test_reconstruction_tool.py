@@ -212,14 +212,6 @@ class ReconstructionTool(ToolTest):
         report = reported("./-in.ply", "out.ply", "-offset", "+.25,-1e-3,-1e-999")
         self.assertEqual(report["options"]["offset"], [0.25, -1e-3, 0])
 
-    def test_help_of_all_options_is_that_for_experts(self):
-        brief, all_options = run("reconstruction", "--help"), run("reconstruction", "-h", "expert")
-        self.assertNotIn("\n  -ascii ", brief)
-        self.assertIn("-h expert", brief)
-        places = [all_options.index(text) for text in ("\n  -surface ", "\n  -sphere FILE ", "\nExpert options:\n",
-                                                       "\n  -ascii ")]  # fmt: skip
-        self.assertEqual(places, sorted(places))
-
     def test_findings_name_points_of_the_input_behind_those_left_out(self):
         # Outliers and points that are not finite before all others shift the vertices.
         run("scan", "bowl", "plain.xyz", "-points", 1000)

@@ -177,16 +177,13 @@ class Report(ToolTest):
             self.check(self.page("sphere", points, *SPHERE, "-sphere", "sphere.ply"))
 
     def test_what_is_no_page_is_refused_and_a_full_disk_leaves_nothing_behind(self):
-        for name in ("", "-", "page", "page.htm", "page.json", ".html", "in.ply"):
-            self.assertIn("-report", run("reconstruction", "in.ply", "out.ply", f"-report={name}", code=2))
-        for words, code, cause in ((["no/page.html"], 1, "missing directory"),
-                                   (["r.html", "-json", "r.html"], 2, "would overwrite")):  # fmt: skip
-            self.assertIn(cause, run("reconstruction", "in.ply", "out.ply", "-report", *words, code=code))
-        # Room for the mesh, not for the page.
-        said = run("reconstruction", "in.ply", "out.ply", "-report", "page.html", code=1,
-                   **limited(resource.RLIMIT_FSIZE, 100000))  # fmt: skip
-        self.assertIn("cannot write 'page.html'", said)
-        self.assertEqual(os.listdir(), ["in.ply"])
+        line = "reconstruction in.ply out.ply -report"
+        names = "''", "-", "page", "page.htm", "page.json", ".html", "in.ply"
+        self.check_refused(2, {f"{line}={name}": "-report" for name in names})
+        self.check_refused(2, {f"{line} r.html -json r.html": "would overwrite"})
+        self.check_refused(1, {f"{line} no/page.html": "missing directory"})
+        full = limited(resource.RLIMIT_FSIZE, 100000)  # room for the mesh, not for the page
+        self.check_refused(1, {f"{line} page.html": "cannot write 'page.html'"}, **full)
 
     def test_the_page_loads_nothing_and_holds_the_report_of_json(self):
         names = "a </script><!-- \"it's\" &.ply", "b </script>.ply"
