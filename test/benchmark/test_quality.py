@@ -1,18 +1,12 @@
-#!/usr/bin/python3
-"""Tests of the referee for meshes: test_quality.py LIBRARY"""
+"""Tests of the referee for meshes, the library of SPHERICAL_PARAM_REFEREE. tools is on PYTHONPATH."""
 
-import pathlib
-import sys
+import os
 import unittest
 
 import numpy as np
+from suite.quality import Mesh, Referee, compare
 
-sys.dont_write_bytecode = True
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "tools")]
-from suite.quality import Mesh, Referee, compare  # noqa: E402
-
-REFEREE = Referee(sys.argv.pop())
+REFEREE = Referee(os.environ["SPHERICAL_PARAM_REFEREE"])
 
 
 def mesh_of(points, triangles):
@@ -132,7 +126,3 @@ class Quality(unittest.TestCase):
         self.assertEqual(REFEREE.distortion(mesh, sphere)["inverted"], 50)
         with self.assertRaises(ValueError):
             REFEREE.distortion(cube(), sphere)
-
-
-if __name__ == "__main__":
-    unittest.main()

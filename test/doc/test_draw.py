@@ -1,22 +1,17 @@
-#!/usr/bin/python3
-"""Tests of tools/draw.py: test_draw.py FOLDER_OF_THE_TOOLS"""
+"""Tests of tools/draw.py, which is on PYTHONPATH. SPHERICAL_PARAM_TOOLS is the folder of the programs."""
 
 import contextlib
 import io
+import os
 import pathlib
 import struct
 import subprocess
-import sys
 import tempfile
 import unittest
 
+import draw
 import numpy as np
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-import draw  # noqa: E402
-
-TOOLS = pathlib.Path(sys.argv.pop()).resolve()
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 TRIANGLES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
 BINARY = b"".join(struct.pack("<3f", *corner) for corner in CORNERS)
@@ -62,8 +57,8 @@ class Draw(unittest.TestCase):
     def test_a_mesh_of_the_tool_fills_its_view_without_seams(self):
         scan, mesh = str(self.folder / "scan.ply"), str(self.folder / "mesh.ply")
         for command in (["scan", "sphere", scan, "-points", "2000"], ["reconstruction", scan, mesh]):
-            subprocess.run([f"{TOOLS}/pcl_spherical_param_{command[0]}", *command[1:]], check=True,
-                           stdout=subprocess.DEVNULL)  # fmt: skip
+            program = f"{os.environ['SPHERICAL_PARAM_TOOLS']}/pcl_spherical_param_{command[0]}"
+            subprocess.run([program, *command[1:]], check=True, stdout=subprocess.DEVNULL)
         pixels = self.picture(scan, mesh, "--colors", scan)
         self.assertEqual(pixels.shape, (150, 300, 3))
         y, x = np.mgrid[:150, :300]
@@ -133,7 +128,3 @@ class Draw(unittest.TestCase):
         for words in (["--size=9"], ["--size=9x9"], ["--size=infx100"], ["--view=1"], ["--view=nan,1"], []):
             with self.subTest(words):
                 self.assertEqual(self.draw(*([good] if words else []), *words)[0], 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
-#!/usr/bin/python3
 """Mistakes of users: each must end with the right exit code, one line of cause and one of remedy, and leave the folder
-as it was: test_bad_input.py FOLDER_OF_THE_TOOLS"""
+as it was."""
 
 import os
 import pathlib
@@ -272,7 +271,3 @@ class BadInput(ToolTest):
             self.check_refused(FAILED, rows, **full_disk(size))
         self.check_output_refused({"reconstruction in.xyz kept.ply": "standard output",
                                    "scan sphere out.pcd -points 99": "standard output"})  # fmt: skip
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,4 @@
-#!/usr/bin/python3
-"""What all tools promise: help, silence, reports, the same bytes, and nothing half done:
-test_every_tool.py FOLDER_OF_THE_TOOLS"""
+"""What all tools promise: help, silence, reports, the same bytes, and nothing half done."""
 
 import glob
 import json
@@ -157,7 +155,3 @@ class EveryTool(ToolTest):
                 if number != signal.SIGKILL:
                     self.assertTrue(listing() == before)
                 self.assertEqual(pathlib.Path("out.ply").read_text(), "kept")
-
-
-if __name__ == "__main__":
-    unittest.main()

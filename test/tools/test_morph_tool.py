@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""pcl_spherical_param_morph: frames, pairs and report: test_morph_tool.py FOLDER_OF_THE_TOOLS"""
+"""pcl_spherical_param_morph: frames, pairs and report."""
 
 import os
 import unittest
@@ -67,7 +66,3 @@ class MorphTool(ToolTest):
             self.check_sphere(frame)
         first, _, last = (areas(frame.points, frame.triangles).sum() for frame in frames)
         self.assertAlmostEqual(last / first, 1, delta=0.05)
-
-
-if __name__ == "__main__":
-    unittest.main()

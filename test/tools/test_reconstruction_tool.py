@@ -1,6 +1,4 @@
-#!/usr/bin/python3
-"""pcl_spherical_param_reconstruction: what is written, reported and printed:
-test_reconstruction_tool.py FOLDER_OF_THE_TOOLS"""
+"""pcl_spherical_param_reconstruction: what is written, reported and printed."""
 
 import os
 import pathlib
@@ -400,7 +398,3 @@ class PartsOption(ToolTest):
         report = read_json("r.json")
         self.assertEqual([part["is_out_of_time"] for part in report["parts"]], 8 * [True])
         self.assertEqual(report["options"]["time_limit"], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

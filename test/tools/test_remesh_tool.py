@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""pcl_spherical_param_remesh: test_remesh_tool.py FOLDER_OF_THE_TOOLS"""
+"""pcl_spherical_param_remesh: grids, geometry images, harmonics and report."""
 
 import pathlib
 import struct
@@ -204,7 +203,3 @@ class RemeshTool(ToolTest):
                      "\n  self intersections  0\n", "\n  distance            mean 0.",
                      "\nverdict   A sound mesh.\n", "\nwritten   out.ply\n"):  # fmt: skip
             self.assertIn(text, done.stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""The page of -report, taken apart by code of its own: test_report.py FOLDER_OF_THE_TOOLS"""
+"""The page of -report, taken apart by code of its own."""
 
 import base64
 import json
@@ -226,7 +225,3 @@ def setUpModule():
         done = call("reconstruction", f"{folder}/none.ply", f"{folder}/out.ply", f"-report={folder}/page.html")
     if "built without the page" in done.stderr:
         raise unittest.SkipTest("this build has no page of the report")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Generated scans, and what they are taken from: test_scan.py FOLDER_OF_THE_TOOLS"""
+"""Generated scans, and what they are taken from."""
 
 import pathlib
 import re
@@ -98,7 +97,3 @@ class Scan(ToolTest):
             self.assertEqual(mesh, pathlib.Path("pcd.off").read_text(), extension)
         for option in ("-h", "-version"):
             self.assertIn("pcl_spherical_param_scan", run("scan", option))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""pcl_spherical_param_texture: its formats, taken apart without the tools: test_texture_tool.py FOLDER_OF_THE_TOOLS"""
+"""pcl_spherical_param_texture: its formats, taken apart without the tools."""
 
 import io
 import json
@@ -218,7 +217,3 @@ class TextureTool(ToolTest):
         run("texture", "in.ply", "a b.ply", "-size", 16, "-quiet")
         self.assertEqual(Mesh("a b.ply").comment, ["comment TextureFile a b.png"])
         run("texture", "in.ply", "a b.glb", "-size", 16, "-quiet")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,4 @@
-"""What the tests of the tools share: test_NAME.py FOLDER_OF_THE_TOOLS"""
+"""What the tests of the tools share. SPHERICAL_PARAM_TOOLS is the folder of the programs; tools is on PYTHONPATH."""
 
 import json
 import os
@@ -6,21 +6,15 @@ import pathlib
 import resource
 import shlex
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import numpy as np
-
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-from draw import TYPES, read_ply  # noqa: E402, F401
-
-TOOLS = pathlib.Path(sys.argv.pop()).resolve()
+from draw import TYPES, read_ply  # noqa: F401
 
 
 def program(tool):
-    return f"{TOOLS}/pcl_spherical_param_{tool}"
+    return f"{os.environ['SPHERICAL_PARAM_TOOLS']}/pcl_spherical_param_{tool}"
 
 
 def call(tool, *words, **more):
