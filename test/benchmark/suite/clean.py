@@ -10,12 +10,6 @@ import pathlib
 from .programs import Cloud, Failure
 
 LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
-HEADER = """\
-# Clouds that the default options mesh cleanly: no faults, no triangles that intersect. They are
-# the real models of doc/reference.md, open, partial, multi-part and noisy variants of these and of
-# models with handles, generated clouds of unusual samplings, and real scans. None is part of the
-# project. tools/benchmark.sh compares the list (--clean) and adds to it (--update-clean); lines are
-# removed by hand. The columns: name, """
 NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
 CLEAN = [(title, title) for title in ("cloud", "result", "remark", *NUMBERS)]
 RESULTS = ("lost", "not found", "other points", "changed", "newly clean", "not clean", "as before")
@@ -35,8 +29,11 @@ def _read(path):
 
 
 def _write(path, entries):
-    lines = [f"{name:24} {' '.join(map(str, numbers.values()))}\n" for name, numbers in sorted(entries.items())]
-    path.write_text(f"{HEADER}{', '.join(NUMBERS)}.\n{''.join(lines)}")
+    """Replaces the entries. Comments stay."""
+    old = path.read_text().splitlines() if path.is_file() else []
+    lines = [line for line in old if line.startswith("#")] or [f"# name, {', '.join(NUMBERS)}"]
+    lines += [f"{name:24} {' '.join(map(str, numbers.values()))}" for name, numbers in sorted(entries.items())]
+    path.write_text("\n".join(lines) + "\n")
 
 
 def _find(folders):
