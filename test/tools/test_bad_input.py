@@ -92,10 +92,8 @@ class BadInput(ToolTest):
             "remesh in.tif out.tif": "geometry image",
             "remesh in.xyz out.ply -harmonics ''": "-harmonics",
             "remesh in.xyz out.ply -harmonics out.ply": "would overwrite",
-            "morph in.ply in.xyz m_%s.ply": "% that is not a frame number",
-            "morph in.ply in.xyz m_%d_%d.ply": "% that is not a frame number",
-            "morph in.ply in.xyz m_%12d.ply": "% that is not a frame number",
-            "morph in.ply in.xyz m_%%.ply": "% that is not a frame number",
+            **{f"morph in.ply in.xyz {name}.ply": "% that is not a frame number"
+               for name in ("m_%s", "m_%d_%d", "m_%12d", "m_%%")},
             "morph in.ply in.xyz m.ply -pairs ''": "-pairs",
             "morph in.ply in.xyz m.ply -json m_001.ply": "would overwrite",
             "morph in.ply m_001.ply m.ply": "would overwrite",
@@ -108,37 +106,31 @@ class BadInput(ToolTest):
             "texture in.ply out.ply -image 'a\nb.png'": "a?b.png",
         })  # fmt: skip
 
+    def check_options_refused(self, rows):
+        """Of the beginnings of command lines the options that are wrong after them, with the causes."""
+        for line, options in rows.items():
+            self.check_refused(WRONG_USAGE, {f"{line} {words}": cause for words, cause in options.items()})
+
     def test_options_that_make_no_sense_are_refused(self):
-        self.check_refused(WRONG_USAGE, {
-            "reconstruction in.xyz out.ply -ki 5": "'-ki'",
-            "reconstruction in.xyz out.ply -quiet=1": "-quiet",
-            "reconstruction in.xyz out.ply -x -- -k": "'-x'",
-            "reconstruction in.xyz out.ply -k": "missing",
-            "reconstruction in.xyz out.ply -k -quiet": "has no value",
-            "reconstruction in.xyz out.ply -k 5 -k 6": "more than once",
-            "reconstruction in.xyz out.ply -tolerance nan": "option -tolerance: 'nan'",
-            "reconstruction in.xyz out.ply -damping ''": "option -damping: ''",
-            "reconstruction in.xyz out.ply -method ball": "option -method: 'ball'",
-            "reconstruction in.xyz out.ply -outliers 1001": "option -outliers: '1001'",
-            "reconstruction in.xyz out.ply -history_frames 5": "'-history_frames'",
-            "reconstruction in.xyz out.ply -parts each -min-points 3": "-min-points",
-            "scan sphere out.pcd more": "one word too many: 'more'",
-            "scan sphere out.pcd -points 3": "option -points: '3'",
-            "scan sphere out.pcd -seed -1": "option -seed: '-1'",
-            "remesh in.xyz out.xyz -grid even -points 3": "-points",
-            "remesh in.xyz out.xyz -grid even -points 16777217": "-points",
-            "remesh in.xyz out.tif -side 10": "10 is even",
-            "remesh in.xyz out.tif -side 1": "-side",
-            "remesh in.xyz out.ply -grid cubic": "'cubic' is not allowed",
-            "remesh in.xyz out.ply -harmonics c.json -degree 513": "-degree",
-            "remesh in.xyz out.ply -map-sweeps 1001": "-map-sweeps",
-            "morph in.ply in.xyz m.ply -frames 1": "-frames",
-            "morph in.ply in.xyz m.ply -align yes": "option -align: 'yes'",
-            "morph in.ply in.xyz m.ply -connectivity resampled -samples 11": "-samples",
-            "texture in.ply out.glb -chart mercator": "mercator",
-            "texture in.ply out.glb -size 15": "-size",
-            "texture in.ply out.glb -gutter 257": "-gutter",
-            "texture in.ply out.glb -checker 0": "-checker",
+        self.check_options_refused({
+            "reconstruction in.xyz out.ply": {
+                "-ki 5": "'-ki'", "-quiet=1": "-quiet", "-x -- -k": "'-x'", "-k": "missing",
+                "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
+                "-tolerance nan": "option -tolerance: 'nan'", "-damping ''": "option -damping: ''",
+                "-method ball": "option -method: 'ball'", "-outliers 1001": "option -outliers: '1001'",
+                "-history_frames 5": "'-history_frames'", "-parts each -min-points 3": "-min-points"},
+            "scan sphere out.pcd": {
+                "more": "one word too many: 'more'", "-points 3": "-points: '3'", "-seed -1": "-seed: '-1'"},
+            "remesh in.xyz out.xyz -grid even": {"-points 3": "-points", "-points 16777217": "-points"},
+            "remesh in.xyz out.tif": {"-side 10": "10 is even", "-side 1": "-side"},
+            "remesh in.xyz out.ply": {
+                "-grid cubic": "'cubic' is not allowed", "-harmonics c.json -degree 513": "-degree",
+                "-map-sweeps 1001": "-map-sweeps"},
+            "morph in.ply in.xyz m.ply": {
+                "-frames 1": "-frames", "-align yes": "option -align: 'yes'",
+                "-connectivity resampled -samples 11": "-samples"},
+            "texture in.ply out.glb": {
+                "-chart mercator": "mercator", "-size 15": "-size", "-gutter 257": "-gutter", "-checker 0": "-checker"},
         })  # fmt: skip
 
     def test_numbers_are_the_whole_text_and_in_their_range(self):
@@ -155,25 +147,22 @@ class BadInput(ToolTest):
             self.assertIn(f"\n  remedy: did you mean {nearest}? ", said)
 
     def test_options_that_do_nothing_are_refused(self):
-        lines = {
-            "reconstruction in.xyz out.ply -max-iterations 5": "-max-iterations does nothing with -method default",
-            "reconstruction in.xyz out.ply -min-points 60 -topology sphere": "-min-points does nothing with -parts all",
-            "reconstruction in.xyz out.ply -time-limit 1 -method paper": "-time-limit does nothing with -method paper",
-            "remesh in.xyz out.ply -side 9": "-side does nothing with ",
-            "remesh in.xyz out.ply -grid even -series": "-series does nothing with ",
-            "remesh in.xyz out.ply -grid even -sphere s.ply": "-sphere does nothing with ",
-            "remesh in.xyz out.ply -degree 5": "-degree does nothing with ",
-            "remesh in.xyz out.ply -map-sweeps 0 -area-weight 1": "-area-weight does nothing with ",
-            "remesh in.xyz out.tif -side 9 -points 9": "-side does nothing with ",
-            "remesh in.xyz out.tif -series": "-series does nothing with ",
-            "remesh in.xyz out.tif -offset 1,2,3": "-offset does nothing with ",
-            "remesh in.xyz out.tif -ascii": "-ascii does nothing with ",
-            "morph in.ply in.xyz m.ply -samples 100": "-samples does nothing with ",
-            "texture in.ply out.glb -ascii": "-ascii does nothing with ",
-        }
-        for option in "-points=9 -fit=linear -k=9 -map-sweeps=2 -grid=even -series -harmonics=c.json".split():
-            lines[f"remesh in.tif out.ply {option}"] = " does nothing with "
-        self.check_refused(WRONG_USAGE, lines)
+        self.check_options_refused({
+            "reconstruction in.xyz out.ply": {
+                "-max-iterations 5": "-max-iterations does nothing with -method default",
+                "-min-points 60 -topology sphere": "-min-points does nothing with -parts all",
+                "-time-limit 1 -method paper": "-time-limit does nothing with -method paper"},
+        })  # fmt: skip
+        for line, options in {
+            "remesh in.xyz out.ply": ["-side 9", "-degree 5", "-area-weight 1 -map-sweeps 0"],
+            "remesh in.xyz out.ply -grid even": ["-series", "-sphere s.ply"],
+            "remesh in.xyz out.tif": ["-side 9 -points 9", "-series", "-offset 1,2,3", "-ascii"],
+            "remesh in.tif out.ply": ["-points 9", "-fit linear", "-k 9", "-map-sweeps 2", "-grid even", "-series",
+                                      "-harmonics c.json"],
+            "morph in.ply in.xyz m.ply": ["-samples 100"],
+            "texture in.ply out.glb": ["-ascii"],
+        }.items():  # fmt: skip
+            self.check_options_refused({line: {words: f"{words.split()[0]} does nothing with " for words in options}})
 
     def test_meshes_with_handles_have_no_map_to_one_sphere(self):
         run("scan", "torus", "torus.xyz", "-points", 1500)
