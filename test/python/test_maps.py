@@ -152,25 +152,16 @@ class Maps(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, "; "):
                 sp.sphere_map(*arguments)
         morph = lambda mesh, **options: sp.morph(mesh, mesh, **options)  # noqa: E731
-        for function, argument, name, values in (
-            (sp.sphere_map, mesh, "area_weight", (2, "1")),
-            (sp.sphere_map, mesh, "sweeps", (1001, 1.5)),
-            (sp.measure_map_distortion, mesh, "threads", (-1,)),
-            (sp.remesh, map_, "grid", ("cubic", 1)),
-            (sp.remesh, map_, "fit", ("spline",)),
-            (sp.remesh, map_, "points", (3, 2**28 + 1, 1e3)),
-            (sp.remesh, map_, "seed", (-1,)),
-            (sp.remesh, map_, "threads", (-1,)),
-            (sp.texture_coordinates, map_, "chart", ("cylinder", 1)),
-            (sp.texture_coordinates, map_, "margin", (0.3, "a")),
-            (morph, map_, "align", ("best",)),
-            (morph, map_, "connectivity", (1,)),
-            (morph, map_, "fit", ("spline",)),
-            (morph, map_, "samples", (3,)),
-            (morph, map_, "match", (1,)),
-            (morph, map_, "pairs", ([1, 2], [[0.5, 1]])),
-        ):
-            for value in values:
+        for function, argument, wrong in (
+            (sp.sphere_map, mesh, {"area_weight": (2, "1"), "sweeps": (1001, 1.5)}),
+            (sp.measure_map_distortion, mesh, {"threads": (-1,)}),
+            (sp.remesh, map_, {"grid": ("cubic", 1), "fit": ("spline",), "points": (3, 2**28 + 1, 1e3), "seed": (-1,),
+                               "threads": (-1,)}),
+            (sp.texture_coordinates, map_, {"chart": ("cylinder", 1), "margin": (0.3, "a")}),
+            (morph, map_, {"align": ("best",), "connectivity": (1,), "fit": ("spline",), "samples": (3,),
+                           "match": (1,), "pairs": ([1, 2], [[0.5, 1]])}),
+        ):  # fmt: skip
+            for name, value in ((name, value) for name, values in wrong.items() for value in values):
                 with self.subTest(name, value=value):
                     with self.assertRaisesRegex(sp.InvalidInput, f"{name}.*; "):
                         function(argument, **{name: value})

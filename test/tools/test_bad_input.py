@@ -120,7 +120,8 @@ class BadInput(ToolTest):
                 "-method ball": "option -method: 'ball'", "-outliers 1001": "option -outliers: '1001'",
                 "-history_frames 5": "'-history_frames'", "-parts each -min-points 3": "-min-points"},
             "scan sphere out.pcd": {
-                "more": "one word too many: 'more'", "-points 3": "-points: '3'", "-seed -1": "-seed: '-1'"},
+                "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
+                "-seed -1": "option -seed: '-1'"},
             "remesh in.xyz out.xyz -grid even": {"-points 3": "-points", "-points 16777217": "-points"},
             "remesh in.xyz out.tif": {"-side 10": "10 is even", "-side 1": "-side"},
             "remesh in.xyz out.ply": {
