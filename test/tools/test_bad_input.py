@@ -24,6 +24,11 @@ class BadInput(ToolTest):
         write("in.tif", "II")
         write("kept.ply", "kept")
 
+    def check_ends_refused(self, rows):
+        """Beginnings of command lines, each with ends that are wrong and their causes."""
+        for line, ends in rows.items():
+            self.check_refused(WRONG_USAGE, {f"{line} {end}": cause for end, cause in ends.items()})
+
     def check_output_refused(self, rows):
         # It must exist: a missing device is not to be replaced by a file of that name.
         with open("/dev/full", "r+b", buffering=0) as full:
@@ -73,46 +78,30 @@ class BadInput(ToolTest):
 
     def test_files_that_make_no_sense_are_refused(self):
         os.symlink("in.ply", "link.ply")
-        self.check_refused(WRONG_USAGE, {
-            "reconstruction 'in\n.las' out.ply": "'in?.las'",
-            "reconstruction - out.ply": "'-' has an extension",
-            "reconstruction in.xyz out": "'out' has an extension",
-            "reconstruction in.xyz out.ply -sphere ''": "-sphere",
-            "reconstruction in.xyz ./a.obj -sphere a.obj": "would overwrite",
-            "reconstruction in.ply link.ply": "would overwrite",
-            "reconstruction in.xyz out_%03d.ply -parts all": "is a pattern for several parts",
-            "reconstruction in.xyz out.ply -sphere s%03d.ply": "is a pattern, but the output is one file",
-            "scan": "the shape is missing",
-            "scan sphere": "the output file",
-            "scan cube out.pcd": "unknown shape 'cube'",
-            "scan sphere out.stl": "extension",
-            "scan sphere out.ply -truth ./out.ply": "would overwrite",
-            "remesh in.xyz out.png": "out.png",
-            "remesh in.xyz out.stl -grid even": "out.stl",
-            "remesh in.tif out.tif": "geometry image",
-            "remesh in.xyz out.ply -harmonics ''": "-harmonics",
-            "remesh in.xyz out.ply -harmonics out.ply": "would overwrite",
-            **{f"morph in.ply in.xyz {name}.ply": "% that is not a frame number"
-               for name in ("m_%s", "m_%d_%d", "m_%12d", "m_%%")},
-            "morph in.ply in.xyz m.ply -pairs ''": "-pairs",
-            "morph in.ply in.xyz m.ply -json m_001.ply": "would overwrite",
-            "morph in.ply m_001.ply m.ply": "would overwrite",
-            "texture in.ply in.ply": "would overwrite",
-            "texture in.ply out.ply -json out.png": "would overwrite",
-            "texture in.ply out.glb -image out.png": "-image",
-            "texture in.ply out.obj -image out.jpg": "out.jpg",
-            "texture in.ply out.obj -image 'a b.png'": "a b.png",
-            "texture in.ply 'a b.obj'": "a b",
-            "texture in.ply out.ply -image 'a\nb.png'": "a?b.png",
+        self.check_ends_refused({
+            "reconstruction": {"'in\n.las' out.ply": "'in?.las'", "- out.ply": "'-' has an extension",
+                               "in.ply link.ply": "would overwrite"},
+            "reconstruction in.xyz": {
+                "out": "'out' has an extension", "out.ply -sphere ''": "-sphere",
+                "./a.obj -sphere a.obj": "would overwrite", "out_%03d.ply -parts all": "is a pattern for several parts",
+                "out.ply -sphere s%03d.ply": "is a pattern, but the output is one file"},
+            "scan": {"": "the shape is missing", "sphere": "the output file", "cube out.pcd": "unknown shape 'cube'",
+                     "sphere out.stl": "extension", "sphere out.ply -truth ./out.ply": "would overwrite"},
+            "remesh in.tif": {"out.tif": "geometry image"},
+            "remesh in.xyz": {"out.png": "out.png", "out.stl -grid even": "out.stl",
+                              "out.ply -harmonics ''": "-harmonics", "out.ply -harmonics out.ply": "would overwrite"},
+            "morph in.ply in.xyz": {
+                **{f"{name}.ply": "% that is not a frame number" for name in ("m_%s", "m_%d_%d", "m_%12d", "m_%%")},
+                "m.ply -pairs ''": "-pairs", "m.ply -json m_001.ply": "would overwrite"},
+            "morph in.ply m_001.ply": {"m.ply": "would overwrite"},
+            "texture in.ply": {
+                "in.ply": "would overwrite", "out.ply -json out.png": "would overwrite",
+                "out.glb -image out.png": "-image", "out.obj -image out.jpg": "out.jpg",
+                "out.obj -image 'a b.png'": "a b.png", "'a b.obj'": "a b", "out.ply -image 'a\nb.png'": "a?b.png"},
         })  # fmt: skip
 
-    def check_options_refused(self, rows):
-        """Of the beginnings of command lines the options that are wrong after them, with the causes."""
-        for line, options in rows.items():
-            self.check_refused(WRONG_USAGE, {f"{line} {words}": cause for words, cause in options.items()})
-
     def test_options_that_make_no_sense_are_refused(self):
-        self.check_options_refused({
+        self.check_ends_refused({
             "reconstruction in.xyz out.ply": {
                 "-ki 5": "'-ki'", "-quiet=1": "-quiet", "-x -- -k": "'-x'", "-k": "missing",
                 "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
@@ -148,7 +137,7 @@ class BadInput(ToolTest):
             self.assertIn(f"\n  remedy: did you mean {nearest}? ", said)
 
     def test_options_that_do_nothing_are_refused(self):
-        self.check_options_refused({
+        self.check_ends_refused({
             "reconstruction in.xyz out.ply": {
                 "-max-iterations 5": "-max-iterations does nothing with -method default",
                 "-min-points 60 -topology sphere": "-min-points does nothing with -parts all",
@@ -163,7 +152,7 @@ class BadInput(ToolTest):
             "morph in.ply in.xyz m.ply": ["-samples 100"],
             "texture in.ply out.glb": ["-ascii"],
         }.items():  # fmt: skip
-            self.check_options_refused({line: {words: f"{words.split()[0]} does nothing with " for words in options}})
+            self.check_ends_refused({line: {words: f"{words.split()[0]} does nothing with " for words in options}})
 
     def test_meshes_with_handles_have_no_map_to_one_sphere(self):
         run("scan", "torus", "torus.xyz", "-points", 1500)
