@@ -6,6 +6,7 @@
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@ using spherical_param::Options;
 using spherical_param::Positions;
 using spherical_param::Surface;
 using spherical_param::Triangles;
+using spherical_param::test::shuffledRange;
 using Cloud = pcl::PointCloud<PointXYZ>;
 using Reconstruction = pcl::SphericalParamReconstruction<PointXYZ>;
 using Polygons = std::vector<pcl::Vertices>;
@@ -104,14 +106,6 @@ protected:
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// 0 ... count - 1 in a random order that is the same in each run.
-inline Indices shuffledIndices(int count) {
-  Indices indices(static_cast<std::size_t>(count));
-  std::iota(indices.begin(), indices.end(), 0);
-  std::shuffle(indices.begin(), indices.end(), std::mt19937(7));
-  return indices;
-}
-
 inline pcl::IndicesPtr share(const Indices& indices) {
   return pcl::IndicesPtr(new Indices(indices));
 }
@@ -127,9 +121,18 @@ inline Polygons meshed(Reconstruction& reconstruction) {
   return polygons;
 }
 
-inline Polygons meshed(const Cloud::Ptr& cloud) {
+/// Of a cloud, perhaps with a search of the user.
+inline Reconstruction reconstructionOf(const Cloud::Ptr& cloud, bool has_search = false) {
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
+  if (has_search)
+    reconstruction.setSearchMethod(
+        pcl::search::KdTree<PointXYZ>::Ptr(new pcl::search::KdTree<PointXYZ>));
+  return reconstruction;
+}
+
+inline Polygons meshed(const Cloud::Ptr& cloud) {
+  Reconstruction reconstruction = reconstructionOf(cloud);
   return meshed(reconstruction);
 }
 
@@ -140,7 +143,7 @@ struct HardCase {
     (*cloud)[7].y = -kInfinity;
     (*cloud)[8].z = kInfinity;
     (*cloud)[20] = (*cloud)[30];
-    indices = shuffledIndices(350);
+    indices = shuffledRange(350, 7);
     for (const pcl::index_t i : indices)
       if (i != 0 && i != 7 && i != 8)
         used.push_back(i);

@@ -21,12 +21,7 @@ using spherical_param::TextureImage;
 
 class SphericalParamRemesh : public Silent {
 protected:
-  void SetUp() override {
-    Silent::SetUp();
-    reconstruction.setInputCloud(makeEllipsoid(1000));
-  }
-
-  Reconstruction reconstruction;
+  Reconstruction reconstruction = reconstructionOf(makeEllipsoid(1000));
   pcl::PolygonMesh mesh;
 };
 
@@ -141,16 +136,10 @@ TEST_F(SphericalParamRemesh, FailureLeavesNothingAndExceptionsOfTheCallbackPass)
 
 class SphericalParamMorph : public Silent {
 protected:
-  void SetUp() override {
-    Silent::SetUp();
-    first.setInputCloud(first_cloud);
-    second.setInputCloud(second_cloud);
-  }
-
   Cloud::Ptr first_cloud = makeEllipsoid(300);
   Cloud::Ptr second_cloud = makeEllipsoid(200, {0.7, 0.9, 2.0});
-  Reconstruction first;
-  Reconstruction second;
+  Reconstruction first = reconstructionOf(first_cloud);
+  Reconstruction second = reconstructionOf(second_cloud);
   std::vector<pcl::PolygonMesh> output;
 };
 
@@ -233,10 +222,9 @@ protected:
   SphericalParamTexture() { options.bake.height = 256; }
 
   template <typename PointT>
-  bool texture(unsigned threads = 0) {
+  bool texture() {
     pcl::SphericalParamReconstruction<PointT> reconstruction;
     reconstruction.setInputCloud(makeEllipsoid<PointT>(800));
-    reconstruction.setNumberOfThreads(threads);
     return pcl::textureSphericalParam(reconstruction, mesh, image, options);
   }
   /// The colour of the image at texture coordinates.
@@ -282,13 +270,9 @@ TEST_F(SphericalParamTexture, IsAClosedMeshWhoseCoordinatesFindTheColoursOfThePo
   }
 }
 
-TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThemForAnyNumberOfThreads) {
-  ASSERT_TRUE(texture<pcl::PointXYZRGB>(1));
+TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThem) {
+  ASSERT_TRUE(texture<pcl::PointXYZRGB>());
   const TextureImage colors = image;
-  const auto data = mesh.cloud.data;
-  ASSERT_TRUE(texture<pcl::PointXYZRGB>(3));
-  EXPECT_EQ(image.pixels, colors.pixels);
-  EXPECT_EQ(mesh.cloud.data, data);
   ASSERT_TRUE(texture<pcl::PointXYZRGBA>());
   EXPECT_EQ(image.pixels, colors.pixels);
   ASSERT_TRUE(texture<pcl::PointXYZRGBNormal>());
@@ -306,8 +290,7 @@ TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThemForAnyNumberOfT
 }
 
 TEST_F(SphericalParamTexture, AMeshWithHandlesIsCutInTheImageAlone) {
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(makeTorus(16));
+  Reconstruction reconstruction = reconstructionOf(makeTorus(16));
   ASSERT_TRUE(pcl::textureSphericalParam(reconstruction, mesh, image, options));
   EXPECT_EQ(reconstruction.getResult().surface().genus(), 1U);
   const auto points = cloudOf<pcl::PointNormal>(mesh.cloud);

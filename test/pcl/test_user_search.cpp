@@ -16,19 +16,14 @@ using Search = pcl::search::Search<PointXYZ>;
 
 class UserSearch : public Silent {};
 
-/// Searches of PCL, which return indices of the cloud or positions in the subset.
-std::vector<Search::Ptr> searchesOfPcl() {
-  return {Search::Ptr(new pcl::search::KdTree<PointXYZ>(false)),
-          Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)),
-          Search::Ptr(new pcl::search::BruteForce<PointXYZ>())};
-}
-
 TEST_F(UserSearch, GivesTheMeshOfTheDefaultOne) {
   const HardCase hard;
-  for (const Search::Ptr& search : searchesOfPcl()) {
+  // They return indices of the cloud or positions in the subset.
+  for (const Search::Ptr& search : {Search::Ptr(new pcl::search::KdTree<PointXYZ>(false)),
+                                    Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)),
+                                    Search::Ptr(new pcl::search::BruteForce<PointXYZ>())}) {
     SCOPED_TRACE(search->getName());
-    Reconstruction reconstruction;
-    reconstruction.setInputCloud(hard.cloud);
+    Reconstruction reconstruction = reconstructionOf(hard.cloud);
     reconstruction.setSearchMethod(search);
     EXPECT_EQ(meshed(reconstruction).size(), 2 * 396U - 4);
     EXPECT_EQ(search->getInputCloud(), hard.cloud) << "the search was not used";
@@ -48,8 +43,7 @@ TEST_F(UserSearch, GivesTheMeshOfTheDefaultOne) {
 TEST_F(UserSearch, MayBeThatOfFlannAlsoAnApproximateOne) {
   using Flann = pcl::search::FlannSearch<PointXYZ>;
   const HardCase hard;
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(hard.cloud);
+  Reconstruction reconstruction = reconstructionOf(hard.cloud);
   // One for each mesh: FlannSearch of PCL 1.13 frees its first cloud's array by the wrong operator.
   const auto meshed_by_flann = [&](const pcl::IndicesPtr& indices) {
     const Search::Ptr search(
@@ -63,7 +57,7 @@ TEST_F(UserSearch, MayBeThatOfFlannAlsoAnApproximateOne) {
   EXPECT_EQ(meshed_by_flann(pcl::IndicesPtr()).size(), 2 * 396U - 4);
   EXPECT_EQ(trianglesOf(meshed_by_flann(share(hard.indices))), hard.expected());
   reconstruction.setInputCloud(makeEllipsoid(600));
-  reconstruction.setIndices(share(shuffledIndices(600)));
+  reconstruction.setIndices(share(shuffledRange(600, 7)));
   reconstruction.setSearchMethod(Search::Ptr(
       new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeMultiIndexCreator(4)))));
   EXPECT_TRUE(isSphere(meshed(reconstruction), 600));
@@ -88,8 +82,7 @@ Cloud::Ptr makeDepthImage() {
 }
 
 TEST_F(UserSearch, OrganizedNeighborWorksOnDepthImagesAlone) {
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(makeDepthImage());
+  Reconstruction reconstruction = reconstructionOf(makeDepthImage());
   const Triangles by_default = trianglesOf(meshed(reconstruction));
   ASSERT_GT(by_default.cols(), 800);
   reconstruction.setSearchMethod(Search::Ptr(new pcl::search::OrganizedNeighbor<PointXYZ>()));
@@ -132,8 +125,7 @@ TEST_F(UserSearch, OddAnswersOfASearchWorkAndWrongOnesFail) {
   const Cloud::Ptr cloud = makeEllipsoid(300);
   (*cloud)[5].x = kNan;
   const Triangles expected = trianglesOf(meshed(cloud));
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(cloud);
+  Reconstruction reconstruction = reconstructionOf(cloud);
   const auto search = [&](int at_most, const std::function<void(pcl::index_t&)>& change = {}) {
     reconstruction.setSearchMethod(Search::Ptr(new OddSearch(at_most, change)));
   };
