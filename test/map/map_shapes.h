@@ -125,6 +125,17 @@ inline Matrix3d rotationBy(double angle, const Vector3d& axis) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
+/// A linear map of directions keeps the orientation of all triangles.
+inline Mapped transformed(Mapped mesh, const Matrix3d& matrix) {
+  mesh.sphere = (matrix * mesh.sphere).colwise().normalized();
+  return mesh;
+}
+
+/// Those of the grid points on a cube.
+inline Positions cubeDirections(int m) {
+  return (cubeGrid(m).array() - 0.5).matrix().colwise().normalized();
+}
+
 /// Area of the unit sphere that a triangle covers, by its angles (A. Girard, 1629).
 inline double sphericalArea(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
   double sum = -kPi;

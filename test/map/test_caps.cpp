@@ -5,7 +5,6 @@
 #include "map_shapes.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>
@@ -113,18 +112,6 @@ TEST(Caps, VerticesOfTheBoundaryDoNotSlide) {
   for (const std::vector<Index>& loop : loops)
     for (const Index v : loop)
       EXPECT_EQ(mesh.points.col(v), before.col(v));
-}
-
-TEST(Caps, AnAtlasOfAnOpenMeshCoversItAndNothingElse) {
-  const Mapped open = test::openBumpy(800);
-  for (const SphereChart chart :
-       {SphereChart::Equirectangular, SphereChart::Octahedral, SphereChart::CubeMap}) {
-    const TextureAtlas atlas = makeTextureAtlas(open.triangles, open.sphere, {chart});
-    const Positions points = atCutVertices(atlas, open.points);
-    EXPECT_NEAR(surfaceArea(points, atlas.triangles), surfaceArea(open.points, open.triangles),
-                1e-9);
-    EXPECT_TRUE(checkTopology(atlas.triangles, columnCount(points)).isOpenSurface());
-  }
 }
 
 TEST(Caps, AMorphIsOpenWhereEitherSurfaceIs) {

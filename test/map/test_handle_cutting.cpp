@@ -2,6 +2,7 @@
 
 #include "charts.h"
 #include "handle_shapes.h"
+#include "indexed.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/reconstruct.h"
 
@@ -61,8 +62,7 @@ TEST(HandleCutting, TheMeshBecomesAPieceOfGenusZeroWithTheSameTriangles) {
     SCOPED_TRACE(mesh.points.cols());
     const CutMesh cut = cutHandles(mesh.points, mesh.triangles);
     ASSERT_EQ(cut.points.cols(), static_cast<Eigen::Index>(cut.vertex_of.size()));
-    EXPECT_TRUE(
-        checkTopology(cut.triangles, static_cast<std::size_t>(cut.points.cols())).isOpenSurface());
+    EXPECT_TRUE(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface());
     EXPECT_EQ(cut.points.leftCols(mesh.points.cols()), mesh.points);
     EXPECT_EQ(*std::max_element(cut.vertex_of.begin(), cut.vertex_of.end()) + 1,
               mesh.points.cols());
@@ -104,8 +104,7 @@ TEST(HandleCutting, OtherMeshesAreRefused) {
   Mesh mesh = torus(6, 5);
   Triangles two(3, 2 * mesh.triangles.cols());
   two << mesh.triangles, mesh.triangles.array() + 30;
-  Positions points(3, 60);
-  points << mesh.points, mesh.points;
+  const Positions points = test::horizontally(mesh.points, mesh.points);
   EXPECT_THROW(cutHandles(points, two), InvalidInput);
   EXPECT_THROW(cutHandles(points, mesh.triangles), InvalidInput);
   const CutMesh cut = cutHandles(mesh.points, mesh.triangles);
@@ -152,8 +151,7 @@ TEST_P(JoinedAtlasOfChart, NoCutOpensTheSurfaceAndTheImageKeepsThem) {
     const TextureAtlas before = makeTextureAtlas(cut.triangles, map.sphere, options());
     const TextureAtlas atlas = joinCuts(before, cut);
     const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
-    const MeshTopology wanted =
-        checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()));
+    const MeshTopology wanted = checkTopology(mesh.triangles, test::columnCount(mesh.points));
     EXPECT_TRUE(topology.isSurface());
     EXPECT_EQ(topology.genus, wanted.genus);
     EXPECT_EQ(topology.boundary_loops, wanted.boundary_loops);

@@ -59,10 +59,8 @@ void expectEnd(const MorphResult& morph, bool is_first, const Mapped& mesh) {
   EXPECT_NEAR(test::volumeOf(end, morph.triangles), test::volumeOf(mesh.points, mesh.triangles),
               1e-10 * area * std::sqrt(area));
   for (std::size_t i = 0; i < places.size(); ++i) {
-    Vector3d point = Vector3d::Zero();
-    for (Index k = 0; k < 3; ++k)
-      point += places[i].weights[k] * mesh.points.col(mesh.triangles(k, places[i].triangle));
-    ASSERT_LT((point - end.col(static_cast<Eigen::Index>(i))).norm(), 1e-12);
+    const Eigen::Matrix3d corners = mesh.points(Eigen::all, mesh.triangles.col(places[i].triangle));
+    ASSERT_LT((corners * places[i].weights - end.col(static_cast<Eigen::Index>(i))).norm(), 1e-12);
   }
 }
 
@@ -106,8 +104,8 @@ TEST(Morphing, EndsAreTheMeshes) {
           test::horizontally(test::regularTetrahedron(), test::randomSphere(n, seed)).leftCols(n));
     };
     const Mapped first = mesh_of(firstBlob(), a, 5);
-    Mapped second = mesh_of(secondBlob(), b, 6);
-    second.sphere = (test::rotationBy(0.3, {1, 2, 3}) * second.sphere).colwise().normalized();
+    const Mapped second =
+        transformed(mesh_of(secondBlob(), b, 6), test::rotationBy(0.3, {1, 2, 3}));
     const MorphResult morph = soundMorphOf(first, second, unaligned());
     EXPECT_TRUE(morph.impossible.empty());
     EXPECT_EQ(morph.rotation, Eigen::Matrix3d::Identity());
@@ -117,10 +115,8 @@ TEST(Morphing, EndsAreTheMeshes) {
 
 TEST(Morphing, ATurnedCopyIsTheSameMesh) {
   const Mapped mesh = firstBlob().over(test::spiralSphere(700));
-  Mapped copy = mesh;
   const Eigen::Matrix3d rotation = test::rotationBy(2.5, {0.3, 1, 0.5});
-  copy.sphere = (rotation * copy.sphere).colwise().normalized();
-  const MorphResult morph = soundMorphOf(mesh, copy, {});
+  const MorphResult morph = soundMorphOf(mesh, transformed(mesh, rotation), {});
   EXPECT_LT((morph.rotation - rotation).norm(), 1e-6);
   EXPECT_LT(morph.alignment_error, 1e-12);
   // The same place on both: the vertices are one.
@@ -134,11 +130,8 @@ TEST(Morphing, MeshesOnCommonGreatCirclesAreLaidOverEachOther) {
   for (const int parts : {1, 2, 3, 4})
     meshes.push_back(test::octasphere(parts));
   // Turned by an eighth, edges go through vertices.
-  meshes.push_back(meshes.back());
-  meshes.back().sphere =
-      (test::rotationBy(test::kPi / 4.0, Vector3d::UnitZ()) * meshes.back().sphere)
-          .colwise()
-          .normalized();
+  meshes.push_back(
+      transformed(meshes.back(), test::rotationBy(test::kPi / 4.0, Vector3d::UnitZ())));
   for (const Mapped& first : meshes)
     for (const Mapped& second : meshes) {
       const MorphResult morph = soundMorphOf(first, second, unaligned());

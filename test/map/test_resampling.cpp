@@ -15,10 +15,6 @@ SphereSurface bumpySurface(Index n) {
   return test::bumpy(test::randomSphere(n, 1)).surface(SurfaceFit::Smooth);
 }
 
-ResampledMesh resampled(const SphereSurface& surface, SphereGrid grid, int frequency) {
-  return resampleSurface(surface, makeGridSphere(grid, frequency));
-}
-
 TEST(GridSphere, IsAClosedMeshThatCoversTheSphereOnce) {
   for (const SphereGrid kind : kGrids)
     for (const int frequency : {1, 2, 3, 7, 12}) {
@@ -112,7 +108,8 @@ TEST(GeometryImage, ItsMeshIsTheResampledSurfaceBitByBitAndBack) {
     const GeometryImage image = makeGeometryImage(surface, side);
     EXPECT_EQ(image.side, side);
     const ResampledMesh mesh = meshOfGeometryImage(image);
-    const ResampledMesh expected = resampled(surface, SphereGrid::Octahedral, side / 2);
+    const ResampledMesh expected =
+        resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, side / 2));
     EXPECT_EQ(mesh.points, expected.points);
     EXPECT_EQ(mesh.directions, expected.directions);
     EXPECT_EQ(mesh.triangles, expected.triangles);

@@ -21,9 +21,8 @@ TEST(RotationSearch, FindsTheRotationOfAnotherSampling) {
   Mapped other =
       test::firstBlob().over(test::rotationBy(1.0, {1, 1, 0}) * test::spiralSphere(1500));
   other.points = (7.0 * other.points).colwise() + Vector3d(3, -50, 8);
-  other.sphere = (rotation * other.sphere).colwise().normalized();
   const SphereSurface first = test::firstBlob().over(test::spiralSphere(2000)).surface();
-  const SphereSurface second = other.surface();
+  const SphereSurface second = transformed(other, rotation).surface();
   const Matrix3d result = found(first, second);
   EXPECT_LT((result - rotation).norm(), 1e-2);
   EXPECT_LT(alignmentError(first, second, result, 0), 1e-4);
@@ -67,14 +66,14 @@ TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
 
 TEST(RotationSearch, PairsDecideWhereTheShapesDoNot) {
   // All rotations of a sphere are as good.
-  Mapped mesh = test::mapped(test::spiralSphere(300));
+  const Mapped mesh = test::mapped(test::spiralSphere(300));
   const SphereSurface sphere = mesh.surface();
   const Matrix3d rotation = test::rotationBy(2.0, {1.0, -2.0, 0.5});
   std::vector<std::pair<Vector3d, Vector3d>> pairs;
   for (const Vector3d& u : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)})
     pairs.emplace_back(u, rotation * u);
-  mesh.sphere = (rotation * mesh.sphere).colwise().normalized();
-  EXPECT_LT((searchRotation(sphere, mesh.surface(), pairs, 0, {}) - rotation).norm(), 1e-5);
+  const SphereSurface turned = transformed(mesh, rotation).surface();
+  EXPECT_LT((searchRotation(sphere, turned, pairs, 0, {}) - rotation).norm(), 1e-5);
 }
 
 }  // namespace

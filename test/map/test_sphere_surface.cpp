@@ -30,17 +30,15 @@ Positions crowded(Index n, double orders, const Vector3d& place) {
 
 /// Maps of all kinds, under a bumpy shape.
 std::vector<Mapped> maps() {
-  const Positions cube = (test::cubeGrid(5).array() - 0.5).matrix().colwise().normalized();
   std::vector<Mapped> all;
   for (const Positions& sphere :
-       {test::randomSphere(200, 1), test::octasphere(1).sphere, test::regularTetrahedron(), cube,
-        crowded(200, 12.0, Vector3d::UnitZ()), crowded(200, 7.0, {1.0, 2.0, 3.0})})
+       {test::randomSphere(200, 1), test::octasphere(1).sphere, test::regularTetrahedron(),
+        test::cubeDirections(5), crowded(200, 12.0, Vector3d::UnitZ()),
+        crowded(200, 7.0, {1.0, 2.0, 3.0})})
     all.push_back(test::bumpy(sphere));
   // Slivers: a linear map of space turns cones into cones.
-  Mapped stretched = test::bumpy(test::randomSphere(200, 6));
-  stretched.sphere.row(0) *= 1000.0;
-  stretched.sphere.colwise().normalize();
-  all.push_back(stretched);
+  all.push_back(transformed(test::bumpy(test::randomSphere(200, 6)),
+                            Vector3d(1000.0, 1.0, 1.0).asDiagonal()));
   return all;
 }
 
@@ -165,10 +163,8 @@ TEST(SphereSurface, LinearFitIsTheMeshAndItsArea) {
   const SurfaceSamples samples = surface.evaluate(test::randomSphere(300, 2));
   for (Eigen::Index i = 0; i < samples.positions.cols(); ++i) {
     const SphereLocation& location = samples.locations[static_cast<std::size_t>(i)];
-    Vector3d expected = Vector3d::Zero();
-    for (Index k = 0; k < 3; ++k)
-      expected += location.weights[k] * map.points.col(map.triangles(k, location.triangle));
-    EXPECT_LT((samples.positions.col(i) - expected).norm(), 1e-14);
+    const Eigen::Matrix3d corners = map.points(Eigen::all, map.triangles.col(location.triangle));
+    EXPECT_LT((samples.positions.col(i) - corners * location.weights).norm(), 1e-14);
   }
   EXPECT_NEAR(test::octasphere(1).surface().area(), 4.0 * std::sqrt(3.0), 1e-14);
 }
@@ -236,7 +232,7 @@ TEST(SphereSurface, SmoothFitIsFiveTimesCloserToASphereAndAnEllipsoid) {
 
 TEST(SphereSurface, SmoothFitDoesNotBulgeAtSharpEdges) {
   for (const int m : {4, 9}) {
-    Mapped cube = test::mapped((test::cubeGrid(m).array() - 0.5).matrix().colwise().normalized());
+    Mapped cube = test::mapped(test::cubeDirections(m));
     cube.points = test::cubeGrid(m).array() - 0.5;
     const Positions directions = test::randomSphere(2000, 8);
     const Positions change = cube.surface(SurfaceFit::Smooth).evaluate(directions).positions -

@@ -17,12 +17,6 @@ using TextureAtlasOfChart = test::EachChart;
 
 INSTANTIATE_TEST_SUITE_P(EachChart, TextureAtlasOfChart, test::kEachChart, test::chartName);
 
-/// A linear map keeps the orientation of all triangles of directions.
-Mapped transformed(Mapped mesh, const Eigen::Matrix3d& matrix) {
-  mesh.sphere = (matrix * mesh.sphere).colwise().normalized();
-  return mesh;
-}
-
 std::vector<Mapped> meshes() {
   const Mapped tetrahedron = test::mapped(test::regularTetrahedron());
   const Eigen::Matrix3d turn = test::someRotation();
@@ -34,7 +28,7 @@ std::vector<Mapped> meshes() {
   for (const int parts : {1, 2, 8})
     all.push_back(test::octasphere(parts));
   all.push_back(transformed(test::octasphere(8), turn));
-  all.push_back(test::mapped((test::cubeGrid(7).array() - 0.5).matrix().colwise().normalized()));
+  all.push_back(test::mapped(test::cubeDirections(7)));
   // The centre has to be inside, or one triangle covers more than half of the sphere.
   for (const Index n : {4, 7, 12, 50, 400})
     for (const std::uint64_t seed : {1U, 2U})
