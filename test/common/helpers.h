@@ -33,14 +33,6 @@ using namespace internal;  // tests see the inside
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Points one beside the other.
-inline Positions positionsOf(const std::vector<Eigen::Vector3d>& points) {
-  Positions result(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    result.col(static_cast<Eigen::Index>(i)) = points[i];
-  return result;
-}
-
 /// The points place(0), ..., place(n - 1).
 template <typename Place>
 Positions pointsAt(Index n, const Place& place) {
@@ -48,6 +40,12 @@ Positions pointsAt(Index n, const Place& place) {
   for (Index i = 0; i < n; ++i)
     points.col(i) = place(i);
   return points;
+}
+
+/// Points one beside the other.
+inline Positions positionsOf(const std::vector<Eigen::Vector3d>& points) {
+  return pointsAt(static_cast<Index>(points.size()),
+                  [&](Index i) { return points[static_cast<std::size_t>(i)]; });
 }
 
 /// The places (i, j) of a grid, row after row.
@@ -117,9 +115,8 @@ inline Positions cubeGrid(int m) {
 inline Positions withNoise(Positions points, double sigma, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, sigma);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      points(axis, i) += normal(random);
+  for (double& coordinate : points.reshaped())
+    coordinate += normal(random);
   return points;
 }
 

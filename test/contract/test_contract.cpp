@@ -43,7 +43,6 @@ public:
     add(value.has_value());
     add(value.value_or(0));
   }
-  std::size_t size() const { return numbers_.size(); }
   bool operator==(const Numbers& other) const { return numbers_ == other.numbers_; }
 
 private:
@@ -227,7 +226,7 @@ TEST(Contract, ThreadsAndReportsChangeNoBit) {
   for (const auto& [name, run, last_fraction] : allFunctions()) {
     SCOPED_TRACE(name);
     const Numbers alone = run(inputs, Execution{1});
-    EXPECT_GT(alone.size(), 0U);
+    EXPECT_FALSE(alone == Numbers());
     EXPECT_TRUE(alone == run(inputs, Execution{2}));
     Watch watch;
     const auto see = [&](const Progress& progress) { return watch.see(progress); };

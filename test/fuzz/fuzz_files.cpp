@@ -83,14 +83,9 @@ void readAsGeometryImage(const std::string& path) {
 /// The mesh of a cloud on a sphere, one point of it twice and one not finite: these are no vertices
 /// of their own.
 CloudReconstruction meshedSphere(int count) {
+  const spherical_param::Positions sphere = spherical_param::test::spiralSphere(count);
   std::ostringstream points;
-  for (int i = 0; i <= count; ++i) {
-    const double z = 1.0 - (2.0 * (i % count) + 1.0) / count;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double angle = 2.4 * (i % count);
-    points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << z << '\n';
-  }
-  points << "nan 0 0\n";
+  points << sphere.transpose() << '\n' << sphere.col(0).transpose() << "\nnan 0 0\n";
   MemoryFile file(".xyz");
   file.fill(points.str().data(), points.str().size());
   Console console(Detail::Nothing);

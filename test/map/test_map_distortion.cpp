@@ -11,89 +11,72 @@ namespace {
 using Eigen::Vector3d;
 using test::Mapped;
 
-/// One triangle of a map, from the singular value decomposition of its linear map.
-struct Triangle {
-  double weight;      ///< area in space
-  double flat;        ///< area of the flat image
-  double covered;     ///< area of the spherical image
-  double angle;       ///< ratio of the singular values
-  double stretch;     ///< mean of the inverse squares of the singular values
-  double difference;  ///< sum over the corners of the differences of angles [rad]
+/// Of each triangle of a map, by the singular value decomposition of its linear map.
+struct Measures {
+  Eigen::ArrayXd in_space;    ///< area
+  Eigen::ArrayXd flat;        ///< area of the flat image
+  Eigen::ArrayXd covered;     ///< area of the spherical image
+  Eigen::ArrayXd angle;       ///< ratio of the singular values
+  Eigen::ArrayXd stretch;     ///< mean of the inverse squares of the singular values
+  Eigen::ArrayXd difference;  ///< sum over the corners of the differences of angles [rad]
 };
 
-Triangle triangleOf(const Mapped& mesh, Eigen::Index t) {
-  std::array<Eigen::Matrix2d, 2> sides;
-  std::array<double, 2> area{};
-  std::array<Vector3d, 2> angles;
-  for (std::size_t s = 0; s < 2; ++s) {
-    const auto corner = [&](Eigen::Index k) -> Vector3d {
-      return (s == 0 ? mesh.points : mesh.sphere).col(mesh.triangles(k % 3, t));
-    };
-    const Vector3d u = corner(1) - corner(0);
-    const Vector3d v = corner(2) - corner(0);
-    const Vector3d x = u.normalized();
-    const Vector3d y = u.cross(v).cross(u).normalized();
-    sides[s] << x.dot(u), x.dot(v), y.dot(u), y.dot(v);
-    area[s] = 0.5 * u.cross(v).norm();
-    for (Eigen::Index k = 0; k < 3; ++k)
-      angles[s][k] = std::acos(
-          (corner(k + 1) - corner(k)).normalized().dot((corner(k + 2) - corner(k)).normalized()));
+Measures measuresOf(const Mapped& mesh) {
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(mesh.triangles.cols());
+  Measures of{zero, zero, zero, zero, zero, zero};
+  for (Eigen::Index t = 0; t < zero.size(); ++t) {
+    std::array<Eigen::Matrix2d, 2> sides;
+    std::array<double, 2> area{};
+    std::array<Vector3d, 2> angles;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const auto corner = [&](Eigen::Index k) -> Vector3d {
+        return (s == 0 ? mesh.points : mesh.sphere).col(mesh.triangles(k % 3, t));
+      };
+      const Vector3d u = corner(1) - corner(0);
+      const Vector3d v = corner(2) - corner(0);
+      const Vector3d x = u.normalized();
+      const Vector3d y = u.cross(v).cross(u).normalized();
+      sides[s] << x.dot(u), x.dot(v), y.dot(u), y.dot(v);
+      area[s] = 0.5 * u.cross(v).norm();
+      for (Eigen::Index k = 0; k < 3; ++k)
+        angles[s][k] = std::acos(
+            (corner(k + 1) - corner(k)).normalized().dot((corner(k + 2) - corner(k)).normalized()));
+    }
+    const Eigen::Array2d sigma =
+        Eigen::JacobiSVD<Eigen::Matrix2d>(sides[1] * sides[0].inverse()).singularValues().array();
+    of.in_space[t] = area[0];
+    of.flat[t] = area[1];
+    of.covered[t] = test::sphericalArea(mesh.sphere, mesh.triangles, t);
+    of.angle[t] = sigma[0] / sigma[1];
+    of.stretch[t] = sigma.square().inverse().mean();
+    of.difference[t] = (angles[0] - angles[1]).cwiseAbs().sum();
   }
-  const Eigen::Vector2d sigma =
-      Eigen::JacobiSVD<Eigen::Matrix2d>(sides[1] * sides[0].inverse()).singularValues();
-  return {area[0],
-          area[1],
-          test::sphericalArea(mesh.sphere, mesh.triangles, t),
-          sigma[0] / sigma[1],
-          0.5 * (std::pow(sigma[0], -2) + std::pow(sigma[1], -2)),
-          (angles[0] - angles[1]).cwiseAbs().sum()};
+  return of;
 }
 
-void expectStatistics(const DistortionStatistics& found, const std::vector<double>& values,
-                      const std::vector<double>& weights) {
-  double mean = 0.0;
-  double above = 0.0;
-  double at_least = 0.0;
-  for (std::size_t t = 0; t < values.size(); ++t) {
-    mean += weights[t] * values[t];
-    above += values[t] > found.p95 * (1.0 + 1e-9) ? weights[t] : 0.0;
-    at_least += values[t] > found.p95 * (1.0 - 1e-9) ? weights[t] : 0.0;
-  }
-  const double max = *std::max_element(values.begin(), values.end());
+void expectStatistics(const DistortionStatistics& found, const Eigen::ArrayXd& values,
+                      const Eigen::ArrayXd& weights) {
+  const double mean = (weights * values).sum();
   EXPECT_NEAR(found.mean, mean, 1e-9 * mean);
-  EXPECT_NEAR(found.max, max, 1e-9 * max);
+  EXPECT_NEAR(found.max, values.maxCoeff(), 1e-9 * values.maxCoeff());
   // 5 % of the area are above the percentile, but for one triangle.
-  EXPECT_LE(above, 0.05);
-  EXPECT_GT(at_least, 0.05);
+  EXPECT_LE((values > found.p95 * (1.0 + 1e-9)).select(weights, 0.0).sum(), 0.05);
+  EXPECT_GT((values > found.p95 * (1.0 - 1e-9)).select(weights, 0.0).sum(), 0.05);
 }
 
 TEST(MapDistortion, IsThatOfSingularValueDecompositionsInAnyUnitAndFrame) {
   Mapped mesh = test::octasphere(8);
   mesh.points = test::randomPositions(mesh.points.cols(), 1);
-  std::vector<Triangle> triangles;
-  double in_space = 0.0;
-  double flat = 0.0;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    triangles.push_back(triangleOf(mesh, t));
-    in_space += triangles.back().weight;
-    flat += triangles.back().flat;
-  }
-  std::vector<double> weights, angles, areas;
-  double stretch = 0.0;
-  double difference = 0.0;
-  for (const Triangle& t : triangles) {
-    weights.push_back(t.weight / in_space);
-    angles.push_back(t.angle);
-    const double ratio = t.covered / (4.0 * test::kPi) / weights.back();
-    areas.push_back(std::max(ratio, 1.0 / ratio));
-    stretch += weights.back() * t.stretch * flat / in_space;
-    difference += t.difference / (3.0 * static_cast<double>(triangles.size())) * 180.0 / test::kPi;
-  }
+  const Measures of = measuresOf(mesh);
+  const Eigen::ArrayXd weights = of.in_space / of.in_space.sum();
+  const Eigen::ArrayXd ratios = of.covered / (4.0 * test::kPi) / weights;
+  const double stretch = (weights * of.stretch).sum() * of.flat.sum() / of.in_space.sum();
+  const double difference = of.difference.mean() / 3.0 * 180.0 / test::kPi;
   for (const double unit : {1e-150, 1.0, 1e150}) {
     const MapDistortion distortion = measureMapDistortion(
         unit * test::rotationBy(unit, {1.0, 2.0, 3.0}) * mesh.points, mesh.triangles, mesh.sphere);
-    expectStatistics(distortion.angle, angles, weights);
-    expectStatistics(distortion.area, areas, weights);
+    expectStatistics(distortion.angle, of.angle, weights);
+    expectStatistics(distortion.area, ratios.max(ratios.inverse()), weights);
     EXPECT_NEAR(distortion.mean_angle_difference, difference, 1e-9 * difference);
     EXPECT_NEAR(distortion.stretch_efficiency, 1.0 / stretch, 1e-9 / stretch);
     EXPECT_EQ(distortion.flipped_triangles, 0);

@@ -54,9 +54,8 @@ Positions directionsFor(const Mapped& map) {
       middles.col(3 * m + t) += corner;
     }
   }
-  return test::horizontally(
-      test::horizontally(test::randomSphere(300, 9), test::withNoise(map.sphere, 1e-8, 2)),
-      test::horizontally(map.sphere, middles));
+  return test::horizontally(test::randomSphere(300, 9), test::withNoise(map.sphere, 1e-8, 2),
+                            map.sphere, middles);
 }
 
 /// The lowest of the triangles whose cones hold a direction, by their definition.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "helpers.h"
+#include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -58,11 +58,7 @@ inline bool liesInPlane(const Positions& points) {
 
 /// Those of the points that are finite.
 inline Positions finiteOf(const Positions& points) {
-  std::vector<Index> finite;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      finite.push_back(i);
-  return points(Eigen::all, finite);
+  return test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.allFinite(); });
 }
 
 /// Whether reconstruct() may mesh points; it must reject all others.

@@ -9,9 +9,8 @@ namespace stress {
 namespace {
 
 using Eigen::Vector3d;
+using test::kPi;
 using Points = std::vector<Vector3d>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Mostly few, sometimes thousands.
 int size(Random& random) {
@@ -52,15 +51,12 @@ Points onSphere(Random& random) {
 /// The lattice points of a box; those on its surface if it is hollow.
 Points lattice(Random& random, bool is_hollow) {
   const int most = random.chance(0.03) ? 10 : 5;
-  const int a = random.integer(2, most);
-  const int b = random.integer(2, most);
-  const int c = random.integer(2, most);
+  const auto side = [&] { return random.integer(2, most); };
+  const Eigen::Vector3i size{side(), side(), side()};
   Points points;
-  for (int x = 0; x < a; ++x)
-    for (int y = 0; y < b; ++y)
-      for (int z = 0; z < c; ++z)
-        if (!is_hollow || std::min({x, y, z}) == 0 || x == a - 1 || y == b - 1 || z == c - 1)
-          points.emplace_back(x, y, z);
+  for (const Eigen::Vector3i& p : test::latticeOf(size))
+    if (!is_hollow || p.minCoeff() == 0 || (size - p).minCoeff() == 1)
+      points.emplace_back(p.cast<double>());
   return points;
 }
 
@@ -173,7 +169,7 @@ Points limb(Random& random) {
   for (int i = random.integer(20, random.chance(0.1) ? 150 : 50); i > 0; --i) {
     const double angle = random.real(0, 2 * kPi);
     const double height = 1.0 + length * random.share();
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
+    points.push_back(test::onCircle(angle, radius, height));
   }
   points.emplace_back(0, 0, 1.0 + length);
   return points;
@@ -292,9 +288,7 @@ NastySet makeNastySet(std::uint64_t seed) {
   set.family = family.name;
   Points points = family.make(random);
   treat(random, points);
-  set.points.resize(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    set.points.col(static_cast<Eigen::Index>(i)) = points[i];
+  set.points = test::positionsOf(points);
   set.options = someOptions(random, points.size() > 600);
   return set;
 }

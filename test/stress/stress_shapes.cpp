@@ -25,25 +25,19 @@ std::string tryOut(const stress::NastySet& set, std::uint64_t seed) {
   return "";
 }
 
-/// Whether faults that are planted in an octahedron are found.
+/// Whether faults that are planted in a tetrahedron are found.
 bool findsPlantedFaults() {
-  Positions points(3, 6);
-  points << 1, -1, 0, 0, 0, 0,  //
-      0, 0, 1, -1, 0, 0,        //
-      0, 0, 0, 0, 1, -1;
-  Triangles sound(3, 8);
-  sound << 0, 2, 1, 3, 2, 1, 3, 0,  //
-      2, 1, 3, 0, 0, 2, 1, 3,       //
-      4, 4, 4, 4, 5, 5, 5, 5;
+  const Positions points = test::horizontally(Positions::Zero(3, 1), Positions::Identity(3, 3));
+  const Triangles sound = test::tetrahedron();
   Triangles flipped = sound;
   std::swap(flipped(0, 3), flipped(1, 3));
   Triangles inside_out = sound;
   inside_out.row(0).swap(inside_out.row(1));
-  Triangles twice(3, 16);
-  twice << sound, (sound.array() + 6).matrix();
-  return test::isSphereOverAll(sound, 6) && !test::isSphereOverAll(sound.leftCols(7), 6) &&
-         !test::isSphereOverAll(twice, 12) && !test::isSphereOverAll(flipped, 6) &&
-         !test::isSphereOverAll(sound, 7) && !stress::facesInward(points, sound) &&
+  Triangles twice(3, 8);
+  twice << sound, test::tetrahedron(4);
+  return test::isSphereOverAll(sound, 4) && !test::isSphereOverAll(sound.leftCols(3), 4) &&
+         !test::isSphereOverAll(twice, 8) && !test::isSphereOverAll(flipped, 4) &&
+         !test::isSphereOverAll(sound, 5) && !stress::facesInward(points, sound) &&
          stress::facesInward(points, inside_out);
 }
 
