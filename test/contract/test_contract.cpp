@@ -4,7 +4,7 @@
 
 #include "core/reconstructions.h"
 #include "handle_shapes.h"
-#include "map/blobs.h"
+#include "map/map_shapes.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"

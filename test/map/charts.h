@@ -47,8 +47,7 @@ inline Vector3d directionAt(const TextureAtlasOptions& options, const Vector2d& 
   if (options.chart == SphereChart::Equirectangular) {
     const double longitude = (2.0 * place.x() - 1.0) * kPi;
     const double latitude = (place.y() - 0.5) * kPi;
-    return {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-            std::sin(latitude)};
+    return onCircle(longitude, std::cos(latitude), std::sin(latitude));
   }
   if (options.chart == SphereChart::Octahedral) {
     Vector3d d(2.0 * place.x() - 1.0, 2.0 * place.y() - 1.0, 0.0);

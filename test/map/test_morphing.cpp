@@ -1,6 +1,6 @@
 #include "spherical_param/map/morphing.h"
 
-#include "blobs.h"
+#include "map_shapes.h"
 #include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "rotation_search.h"
 
-#include "blobs.h"
+#include "map_shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -18,13 +18,11 @@ Positions crowded(Index n, double orders, const Vector3d& place) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), place);
-  Positions sphere(3, n);
-  for (Index i = 0; i < n; ++i) {
+  const Positions sphere = test::pointsAt(n, [&](Index) {
     const double radius = std::pow(10.0, -orders * uniform(random));
     const double angle = 2.0 * test::kPi * uniform(random);
-    sphere.col(i) =
-        (turn * Vector3d(radius * std::cos(angle), radius * std::sin(angle), 1.0)).normalized();
-  }
+    return (turn * test::onCircle(angle, radius, 1.0)).normalized();
+  });
   return test::horizontally(sphere, test::octasphere(1).sphere);
 }
 
@@ -203,17 +201,13 @@ Errors errorsOnEllipsoid(const Positions& sphere, const Vector3d& axes, SurfaceF
       test::mappedOver(sphere, [&](const Vector3d& u) { return axes.cwiseProduct(u); })
           .surface(fit)
           .evaluate(test::randomSphere(1000, 8));
-  Errors errors;
-  const auto count = static_cast<double>(samples.positions.cols());
-  for (Eigen::Index i = 0; i < samples.positions.cols(); ++i) {
-    const Vector3d scaled = samples.positions.col(i).cwiseQuotient(axes);
-    const Vector3d normal = scaled.cwiseQuotient(axes);
-    const double error = std::abs(scaled.squaredNorm() - 1.0) / (2.0 * normal.norm());
-    errors.rms += error * error / count;
-    errors.max = std::max(errors.max, error);
-    errors.rms_angle += (samples.normals.col(i) - normal.normalized()).squaredNorm() / count;
-  }
-  return {std::sqrt(errors.rms), errors.max, std::sqrt(errors.rms_angle)};
+  const Positions scaled = axes.cwiseInverse().asDiagonal() * samples.positions;
+  const Positions normals = axes.cwiseInverse().asDiagonal() * scaled;
+  const Eigen::ArrayXXd errors =
+      (scaled.colwise().squaredNorm().array() - 1.0) / (2.0 * normals.colwise().norm().array());
+  const Positions turned = samples.normals - normals.colwise().normalized();
+  return {std::sqrt(errors.square().mean()), errors.abs().maxCoeff(),
+          std::sqrt(turned.colwise().squaredNorm().mean())};
 }
 
 TEST(SphereSurface, SmoothFitIsFiveTimesCloserToASphereAndAnEllipsoid) {
