@@ -26,7 +26,6 @@ inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists
   return result;
 }
 
-/// Row i of a graph.
 inline std::vector<Index> rowOf(const Graph& graph, Index i) {
   return rowOf(graph.offsets, graph.neighbors, i);
 }

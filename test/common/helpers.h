@@ -252,7 +252,6 @@ inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus) {
              2 - 2 * genus;
 }
 
-/// Whether they are a sphere.
 inline bool isSphereOverAll(const Triangles& triangles, Index n) {
   return isSurfaceOverAll(triangles, n, 0);
 }
@@ -297,7 +296,6 @@ inline double volumeOf(const Positions& points, const Triangles& triangles) {
   return sum / 6.0;
 }
 
-/// Points and triangles over them.
 struct Mesh {
   Positions points;
   Triangles triangles;

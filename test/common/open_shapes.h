@@ -5,7 +5,6 @@
 /// Clouds of surfaces with openings, and checks of their meshes.
 namespace spherical_param::test {
 
-/// The points that meet a condition.
 inline Positions pointsWhere(const Positions& points,
                              const std::function<bool(const Eigen::Vector3d&)>& condition) {
   std::vector<Eigen::Index> kept;

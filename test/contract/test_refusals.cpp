@@ -190,16 +190,13 @@ TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
 TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
   const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
-  ResampledMesh few = good;
-  few.directions = good.directions.leftCols(5);
-  ResampledMesh beyond = good;
-  beyond.triangles(0, 0) = 38;
-  ResampledMesh normals = good;
-  normals.normals = good.normals.leftCols(5);
-  for (const auto& [mesh, threads] : {std::pair(&good, -1), {&few, 0}, {&beyond, 0}, {&normals, 0}})
-    expectRefused("untangle()", [&, mesh = mesh, threads = threads] {
-      ResampledMesh changed = *mesh;
-      untangle(surface, changed, {true, threads});
+  std::vector<ResampledMesh> meshes(4, good);
+  meshes[0].directions = good.directions.leftCols(5);
+  meshes[1].triangles(0, 0) = 38;
+  meshes[2].normals = good.normals.leftCols(5);
+  for (ResampledMesh& mesh : meshes)
+    expectRefused("untangle()", [&] {
+      untangle(surface, mesh, {true, &mesh == &meshes.back() ? -1 : 0});
     });
 }
 

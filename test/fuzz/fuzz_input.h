@@ -227,7 +227,6 @@ public:
       at_ = call;
     }
   }
-  /// The callback.
   bool operator()(const spherical_param::Progress& progress) {
     require(!hasEnded(), "the callback is not called again after it ended the work");
     require(std::this_thread::get_id() == caller_, "it is called from the caller's thread");

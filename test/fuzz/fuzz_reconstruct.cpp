@@ -71,10 +71,7 @@ public:
   NeighborSearch operator()(const std::vector<Index>& some) {
     require(some_.empty(), "one search is made");
     require(std::is_sorted(some.begin(), some.end()), "points are ascending");
-    std::vector<Index> first;
-    for (const auto& entry : stress::firstAtPlaces(stress::finiteOf(points_)))
-      first.push_back(entry.second);
-    require(some.size() == first.size() &&
+    require(some.size() == stress::firstAtPlaces(stress::finiteOf(points_)).size() &&
                 stress::firstAtPlaces(points_(Eigen::all, some)).size() == some.size(),
             "it is made of one point at each position");
     some_ = some;

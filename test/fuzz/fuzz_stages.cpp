@@ -125,17 +125,14 @@ void fuzzChecks(Bytes& bytes, const Positions& points, Watch& watch) {
     of.push_back(bytes.index(static_cast<std::size_t>(triangles.cols())));
   execution.progress = {};
   const auto some = findSelfIntersectionsOf(points, triangles, of, execution);
-  auto expected = pairs;
-  const auto is_of = [&](Index t) { return std::find(of.begin(), of.end(), t) != of.end(); };
-  expected.erase(
-      std::remove_if(expected.begin(), expected.end(),
-                     [&](const auto& pair) { return !is_of(pair[0]) && !is_of(pair[1]); }),
-      expected.end());
+  std::vector<std::array<Index, 2>> expected;
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(expected), [&](const auto& pair) {
+    return std::find_first_of(of.begin(), of.end(), pair.begin(), pair.end()) != of.end();
+  });
   require(some == expected || !haveExactProducts(points),
           "the pairs of some triangles are those among all");
 }
 
-/// A surface and its map to the sphere.
 struct Mapped {
   Triangles triangles;
   Positions sphere;

@@ -22,7 +22,6 @@ namespace spherical_param::test {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A mesh with its map.
 struct Mapped {
   Positions points;
   Triangles triangles;

@@ -17,7 +17,6 @@ using Color = std::array<int, 3>;
 
 INSTANTIATE_TEST_SUITE_P(EachChart, TextureOfChart, test::kEachChart, test::chartName);
 
-/// A colour for each direction.
 Colors colorsOf(const Mapped& mesh) {
   return 127.5 * (mesh.sphere.array() + 1.0).matrix();
 }

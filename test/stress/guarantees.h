@@ -56,7 +56,6 @@ inline bool liesInPlane(const Positions& points) {
   });
 }
 
-/// Those of the points that are finite.
 inline Positions finiteOf(const Positions& points) {
   return test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.allFinite(); });
 }

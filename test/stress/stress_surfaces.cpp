@@ -36,7 +36,6 @@ Opening measured(const std::vector<Vector3d>& loop) {
   return opening;
 }
 
-/// The loops of the boundary.
 std::vector<Opening> openingsOf(const TruthMesh& mesh) {
   std::map<Index, Index> next = test::boundaryOf(mesh.triangles);
   std::vector<Opening> openings;
@@ -53,7 +52,6 @@ std::vector<Opening> openingsOf(const TruthMesh& mesh) {
   return openings;
 }
 
-/// What is true of a shape.
 struct Truth {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;
   double area = 0.0;
