@@ -36,7 +36,7 @@ if check "clang: build" configure_and_build asan "${programs[@]}" spherical_para
   # Large clouds, whole collections and repeated calls are for the release build: the same code runs on
   # smaller ones in other tests.
   release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
-  release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*'
+  release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
   for program in "${programs[@]}"; do
     check "ASan and UBSan: $program" sanitized "build/asan/bin/$program" "-$release_only" || true
   done

@@ -146,6 +146,16 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
     texts.push_back(finding.text);
   EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
   EXPECT_EQ(result.verdict, "3 surfaces, 1 with faults. 1 part cannot be meshed.");
+  for (const std::size_t count : {8U, 9U}) {
+    result = {};
+    result.surfaces.resize(count, soundResult());
+    for (Surface& surface : result.surfaces)
+      surface.findings = {{"torn", "", "", true}};
+    summarize(count, result);
+    EXPECT_EQ(result.findings[0].text,
+              count == 9 ? "9 parts: torn"
+                         : "part 1, part 2, part 3, part 4, part 5, part 6, part 7, part 8: torn");
+  }
   result = {};
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};

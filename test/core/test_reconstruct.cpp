@@ -79,6 +79,14 @@ TEST(Reconstruct, NastySetsAreMeshed) {
       }
 }
 
+TEST(Reconstruct, AMeshOfTheFacesOfTheGraphTakesThePlaceOfATangle) {
+  // The embedding of spheres side by side is folded.
+  const Positions points = inARow(4, 2.6, spiralSphere(150));
+  const Surface result = surfaceOf(points, given("parts", "all"));
+  test::expectSound(result, 0, 0);
+  EXPECT_EQ(result.vertexCount(), 600U);
+}
+
 TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReportedUnlessCentringUndoesIt) {
   // Seen from the centroid, the sphere is one place and the far point the opposite one. Centring
   // spreads the one place over the sphere again within a few steps.

@@ -72,6 +72,27 @@ TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
   EXPECT_EQ(*std::min_element(handle.loop.begin(), handle.loop.end()), handle.loop.front());
 }
 
+TEST(SurfaceTopology, LoopsAreShortHoweverRoughTheirSurface) {
+  // Random points of two tori that share a part.
+  constexpr double tube = 0.35;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> turn(0.0, 2.0 * kPi);
+    std::vector<Eigen::Vector3d> points;
+    while (points.size() < 700) {
+      const double v = turn(random);
+      const Eigen::Vector3d p =
+          onCircle(turn(random), 1.0 + tube * std::cos(v), tube * std::sin(v));
+      if (p.x() < 0.95)
+        points.push_back(points.size() % 2 == 0 ? p : Eigen::Vector3d(1.9 - p.x(), p.y(), p.z()));
+    }
+    const Surface result = surfaceOf(positionsOf(points));
+    EXPECT_EQ(result.handles.size(), 2U);
+    for (const HandleLoop& handle : result.handles)
+      EXPECT_LT(handle.length, 1.2 * 2.0 * kPi * tube);
+  }
+}
+
 TEST(SurfaceTopology, HandlesBesideOpenings) {
   const Positions torus = torusCloud(80, 30, 2.5, 1.0);
   for (const double beside : {3.5, 1.5}) {  // outside, and in the hole of the torus

@@ -4,6 +4,7 @@
 #include "graphs.h"
 #include "handle_shapes.h"
 #include "open_shapes.h"
+#include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
 namespace {
@@ -72,6 +73,26 @@ TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
   const auto mesh = meshOf(points, localDelaunayGraph(points).graph, 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 605));
+}
+
+TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
+  // Eight spheres hang on one vertex of another one, which has triangles for a few.
+  constexpr Index n = 30;
+  constexpr Index spheres = 9;
+  const Positions sphere = spiralSphere(n);
+  const Triangles hull = triangulateSphere(sphere);
+  Positions points(3, spheres * n);
+  Triangles triangles(3, spheres * hull.cols());
+  std::vector<Bridge> bridges;
+  for (Index i = 0; i < spheres; ++i) {
+    points.middleCols(i * n, n) = movedTo(3.0 * i, sphere);
+    triangles.middleCols(i * hull.cols(), hull.cols()) = hull.array() + i * n;
+    if (i > 0)
+      bridges.push_back({0, i * n, 3.0 * i});
+  }
+  const auto mesh = meshOf(points, withEdges(graphOfMesh(points, triangles), bridges), 0);
+  ASSERT_TRUE(mesh);
+  EXPECT_TRUE(isSphereOverAll(*mesh, spheres * n));
 }
 
 TEST(FaceMesh, SaysWhatIsNoFace) {

@@ -1,5 +1,5 @@
+#include "graph_building.h"
 #include "graphs.h"
-
 #include "open_shapes.h"
 
 namespace spherical_param::test {
@@ -66,6 +66,20 @@ TEST(Openings, ThatCurlAreAsWideAsTheLeastSurfaceOverThem) {
   EXPECT_LE(openings[0].area, openings[0].boundary_length / 2.0);
   EXPECT_NEAR(openings[0].width, 4.0 * openings[0].area / openings[0].boundary_length, 1e-12);
   EXPECT_TRUE(openings[0].isCertain());
+}
+
+TEST(Openings, EdgesAcrossThemAreFalse) {
+  const Positions points = sphereWithHoles(1500, 1, 0.4);
+  const Graph graph = graphOf(points, bruteForceNeighbors(points, 24)).graph;
+  const std::vector<Opening> openings = openingsOf(points);
+  ASSERT_EQ(openings.size(), 1U);
+  const std::vector<Index>& loop = openings[0].loop;
+  const auto [v, w] = std::minmax(loop[0], loop[loop.size() / 2]);
+  const double length = (points.col(v) - points.col(w)).norm();
+  const Openings crossed = test::openingsOf(points, withEdges(graph, {{v, w, length}}));
+  ASSERT_EQ(crossed.openings.size(), 1U);
+  const std::array<Index, 2> edge{v, w};
+  EXPECT_EQ(std::count(crossed.false_edges.begin(), crossed.false_edges.end(), edge), 1);
 }
 
 TEST(Openings, CountFromThreeSpacingsOn) {
