@@ -72,17 +72,21 @@ TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
   EXPECT_EQ(*std::min_element(handle.loop.begin(), handle.loop.end()), handle.loop.front());
 }
 
+/// A random point of a torus of radius 1.
+Eigen::Vector3d onTorus(std::mt19937_64& random, double tube) {
+  std::uniform_real_distribution<double> turn(0.0, 2.0 * kPi);
+  const double v = turn(random);
+  return onCircle(turn(random), 1.0 + tube * std::cos(v), tube * std::sin(v));
+}
+
 TEST(SurfaceTopology, LoopsAreShortHoweverRoughTheirSurface) {
-  // Random points of two tori that share a part.
+  // Two tori that share a part.
   constexpr double tube = 0.35;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> turn(0.0, 2.0 * kPi);
     std::vector<Eigen::Vector3d> points;
     while (points.size() < 700) {
-      const double v = turn(random);
-      const Eigen::Vector3d p =
-          onCircle(turn(random), 1.0 + tube * std::cos(v), tube * std::sin(v));
+      const Eigen::Vector3d p = onTorus(random, tube);
       if (p.x() < 0.95)
         points.push_back(points.size() % 2 == 0 ? p : Eigen::Vector3d(1.9 - p.x(), p.y(), p.z()));
     }
@@ -91,6 +95,27 @@ TEST(SurfaceTopology, LoopsAreShortHoweverRoughTheirSurface) {
     for (const HandleLoop& handle : result.handles)
       EXPECT_LT(handle.length, 1.2 * 2.0 * kPi * tube);
   }
+}
+
+TEST(SurfaceTopology, HandlesOfFewPointsAreKeptIfTheyPayAndSaidIfTheyCannot) {
+  const auto torus_of = [](int n, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < n; ++i)
+      points.push_back(onTorus(random, 0.35));
+    return surfaceOf(positionsOf(points));
+  };
+  const Surface kept = torus_of(200, 3);
+  EXPECT_EQ(kept.genus(), 1U);
+  ASSERT_EQ(kept.handles.size(), 1U);
+  EXPECT_LT(kept.handles[0].certainty, 1.0);
+  EXPECT_FALSE(kept.handles[0].is_cut);
+  // No mesh along this loop can be glued.
+  const Surface cut = torus_of(120, 3);
+  EXPECT_EQ(cut.genus(), 0U);
+  ASSERT_EQ(cut.handles.size(), 1U);
+  EXPECT_TRUE(cut.handles[0].is_cut);
+  EXPECT_TRUE(isFound(cut, "handle"));
 }
 
 TEST(SurfaceTopology, HandlesBesideOpenings) {
