@@ -37,6 +37,7 @@ if check "clang: build" configure_and_build asan "${programs[@]}" spherical_para
   # smaller ones in other tests.
   release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
   release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
+  release_only+=':Judgement.WhatIsNotUsable*:SelfIntersection.ASearchUpTo*'
   for program in "${programs[@]}"; do
     check "ASan and UBSan: $program" sanitized "build/asan/bin/$program" "-$release_only" || true
   done
