@@ -35,10 +35,14 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   EXPECT_FALSE(cleaned({}));
 }
 
+/// Random points of a plate whose two sides, which false edges join, are nearer to each other than
+/// their points.
+Positions thinPlate(std::uint64_t seed) {
+  return Eigen::Vector3d(1.0, 1.0, 0.1).asDiagonal() * randomSphere(300, seed);
+}
+
 TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
-  // Random points of a thin plate: false edges join its two sides, and the sphere is a tangle.
-  Positions points = randomSphere(300, 2);
-  points.row(2) *= 0.1;
+  const Positions points = thinPlate(2);  // the sphere is a tangle
   const Result scan = reconstruct(points);
   const Surface& surface = scan.surface();
   EXPECT_EQ(surface.intersecting_triangles, 0U);
@@ -54,12 +58,8 @@ TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
 }
 
 TEST(MeshCleaning, RandomPointsOfThinPlatesAreAllMeshed) {
-  // The two sides are nearer to each other than their points: many triangles intersect at first.
-  for (std::uint64_t seed = 11; seed < 18; ++seed) {
-    Positions points = randomSphere(300, seed);
-    points.row(2) *= 0.1;
-    EXPECT_TRUE(reconstruct(points).left_out.unmeshed.empty()) << seed;
-  }
+  for (std::uint64_t seed = 11; seed < 18; ++seed)
+    EXPECT_TRUE(reconstruct(thinPlate(seed)).left_out.unmeshed.empty()) << seed;
 }
 
 TEST(MeshCleaning, OfATangleTheTrianglesThatAreCertainStay) {
