@@ -72,15 +72,18 @@ struct Search {
 
 extern "C" {
 
-/// Whether a mesh is one closed manifold with the topology of a sphere, oriented or not. Vertices
-/// without triangles do not matter.
-std::int64_t is_sphere(const Index* triangles, std::int64_t count, std::int64_t vertices) {
+/// Whether a mesh is a manifold, oriented or not. The figures: components, boundary loops, Euler
+/// characteristic, and the genus of an oriented manifold, else -1. Vertices without triangles do
+/// not matter.
+std::int64_t check_topology(const Index* triangles, std::int64_t count, std::int64_t vertices,
+                            std::int64_t* figures) {
   const MeshTopology topology = checkTopology(Eigen::Map<const Triangles>(triangles, 3, count),
                                               static_cast<std::size_t>(vertices));
-  return topology.manifold() && topology.closed && topology.components == 1 &&
-                 topology.euler_characteristic == 2
-             ? 1
-             : 0;
+  figures[0] = static_cast<std::int64_t>(topology.components);
+  figures[1] = static_cast<std::int64_t>(topology.boundary_loops);
+  figures[2] = topology.euler_characteristic;
+  figures[3] = topology.genus.value_or(-1);
+  return topology.manifold() ? 1 : 0;
 }
 
 /// The number of pairs of triangles that intersect.

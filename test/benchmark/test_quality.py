@@ -47,20 +47,27 @@ def distance(p, corners):
 
 class Quality(unittest.TestCase):
     def test_polyhedra_alone_are_spheres_whichever_way_their_triangles_run(self):
-        one = octahedron()
-        for mesh in (one, changed(cube(), 5, [5, 0, 4])):
-            self.assertEqual(REFEREE.topology(mesh), {"sphere": True, "boundary": 0, "crowded": 0})
-        open_mesh = mesh_of(one.points, one.triangles[1:])
-        self.assertEqual(REFEREE.topology(open_mesh), {"sphere": False, "boundary": 3, "crowded": 0})
-        crowded = mesh_of(one.points, [*one.triangles, (0, 1, 2)])
-        self.assertEqual(REFEREE.topology(crowded), {"sphere": False, "boundary": 1, "crowded": 2})
+        one, keys = octahedron(), ("sphere", "parts", "openings", "genus", "boundary", "crowded")
+        for mesh, expected in (
+            (one, (True, 1, 0, 0, 0, 0)),
+            (changed(cube(), 5, [5, 0, 4]), (True, 1, 0, None, 0, 0)),
+            (mesh_of(one.points, np.delete(one.triangles, [0, 6], axis=0)), (False, 1, 2, 0, 6, 0)),
+            (mesh_of(one.points, [*one.triangles, (0, 1, 2)]), (False, 1, 1, None, 1, 2)),
+        ):
+            self.assertEqual(REFEREE.topology(mesh), dict(zip(keys, expected)))
         # The connectivity of a torus on seven vertices (Moebius 1861); two octahedra apart, and with two vertices
         # in common.
         torus = [[corner % 7 for corner in (i, i + 1, i + 3, i, i + 3, i + 2)] for i in range(7)]
         two = np.concatenate([one.triangles, one.triangles + 6])
         touching = np.where(two >= 10, two - 6, two)
-        for triangles in (torus, two, touching, [*one.triangles, (1, 1, 2)]):
-            self.assertFalse(REFEREE.topology(mesh_of(np.zeros((12, 3)), triangles))["sphere"], triangles)
+        for triangles, parts, genus in (
+            (torus, 1, 1),
+            (two, 2, 0),
+            (touching, 1, None),
+            ([*one.triangles, (1, 1, 2)], 1, None),
+        ):
+            found = REFEREE.topology(mesh_of(np.zeros((12, 3)), triangles))
+            self.assertEqual((found["sphere"], found["parts"], found["genus"]), (False, parts, genus), triangles)
 
     def test_points_are_used_if_a_vertex_is_exactly_there(self):
         mesh = octahedron()

@@ -60,8 +60,12 @@ class Referee:
     def topology(self, mesh):
         edges = mesh.edges().reshape(-1, 2)
         counts = np.unique(edges @ [len(mesh.points), 1], return_counts=True)[1]
-        return {"sphere": bool(self._call("is_sphere", mesh.triangles, len(mesh.triangles), len(mesh.points))),
-                "boundary": int((counts == 1).sum()), "crowded": int((counts > 2).sum())}  # fmt: skip
+        figures = np.empty(4, np.int64)
+        is_manifold = bool(self._call("check_topology", mesh.triangles, len(mesh.triangles), len(mesh.points), figures))
+        parts, openings, euler, genus = figures.tolist()
+        return {"sphere": is_manifold and (parts, openings, euler) == (1, 0, 2), "parts": parts, "openings": openings,
+                "genus": genus if genus >= 0 else None, "boundary": int((counts == 1).sum()),
+                "crowded": int((counts > 2).sum())}  # fmt: skip
 
     def intersections(self, mesh):
         return self._call("self_intersections", mesh.points, len(mesh.points), mesh.triangles, len(mesh.triangles))
