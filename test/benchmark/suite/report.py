@@ -51,9 +51,11 @@ class Report:
         self.text(f"![{caption}]({name})")
 
     def table(self, name, columns, rows):
-        """A table, unless there are no rows. The CSV file has all values, not rounded, also those without a column."""
+        """A table, unless there are no rows; without columns that have no value. The CSV file has all values, not
+        rounded, also those without a column."""
         if not rows:
             return
+        columns = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
         self.blocks[name] = markdown(columns, rows)
         self.text(f"{self.blocks[name]}\n[{name}.csv]({name}.csv)")
         with (self.folder / f"{name}.csv").open("w", newline="") as file:
