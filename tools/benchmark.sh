@@ -8,8 +8,8 @@
 #                      [--clean DIR]... [--clean-list FILE] [--update-clean]
 #
 #   OUT           folder for the report
-#   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply.
-#                 Without it, generated scans alone.
+#   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply;
+#                 and of real scans, scans/NAME.ply or .pcd. Without it, generated and Debian's scans
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated

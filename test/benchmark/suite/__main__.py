@@ -28,7 +28,10 @@ class Context:
         self.arguments, self.out, self.work = arguments, arguments.out, pathlib.Path(work)
         self.quick, self.large = arguments.quick, arguments.large
         self.programs = Programs(arguments.build / "bin", self.work, self.choose(10000, 50000))
-        self.models = load_clouds(arguments.models) if arguments.models else []
+        models = load_clouds(arguments.models) if arguments.models else []
+        self.handles = [cloud for cloud in models if self.programs.true_genus(cloud)]
+        self.models = [cloud for cloud in models if cloud not in self.handles]
+        self.scans = sorted((arguments.models / "scans").glob("*.p[cl][dy]")) if arguments.models else []
         self.lost = []  # clouds that are no longer clean
         self.report = Report(self.out)
         self.started = time.monotonic()

@@ -7,7 +7,7 @@ import concurrent.futures
 import os
 import pathlib
 
-from .programs import Cloud, Failure
+from .programs import Cloud, Failure, is_sound
 
 LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
 NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
@@ -50,10 +50,8 @@ def _measure(context, path):
     mesh = context.work / f"clean_{path.stem}.ply"
     try:
         told = context.programs.reconstruct(Cloud(path.stem, path), mesh, "-threads", 1)[1]
-        is_sound = (told["usable"] and not told["failures"]
-                    and not any(found["is_fault"] for found in told["findings"]))  # fmt: skip
         # The referee also compares the surfaces with each other.
-        pairs = context.programs.measure(mesh)["intersections"] if is_sound else 0
+        pairs = context.programs.measure(mesh)["intersections"] if is_sound(told) else 0
     except Failure as failure:
         return {}, failure.args[0]
     mesh.unlink()
@@ -61,7 +59,7 @@ def _measure(context, path):
     numbers = (told["points"], len(surfaces), sum(one["boundary_loops"] for one in surfaces),
                sum(one["genus"] or 0 for one in surfaces), sum(map(len, told["left_out"].values())),
                sum(one["left_out_triangles"] for one in surfaces))  # fmt: skip
-    fault = f"{pairs} self-intersections" if pairs else "" if is_sound else told["verdict"]
+    fault = f"{pairs} self-intersections" if pairs else "" if is_sound(told) else told["verdict"]
     return dict(zip(NUMBERS, numbers)), fault
 
 

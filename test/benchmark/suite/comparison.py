@@ -3,11 +3,12 @@
 import json
 import statistics
 
-from .programs import Failure, in_turn, median_seconds
+from .programs import Failure, busy_cores, in_turn, is_sound, median_seconds
 
 OURS = "ours"
+FRONT = "CGAL advancing front"  # the fastest peer whose mesh has all points
 PEERS = {  # program and method
-    "CGAL advancing front": ("benchmark_peer_cgal", "advancing_front"),
+    FRONT: ("benchmark_peer_cgal", "advancing_front"),
     "CGAL advancing front, filled": ("benchmark_peer_cgal", "advancing_front_filled"),
     "CGAL Poisson": ("benchmark_peer_cgal", "poisson"),
     "CGAL alpha wrap": ("benchmark_peer_cgal", "alpha_wrap"),
@@ -25,14 +26,18 @@ SUMMARY = [("method", "method"), ("clouds", "clouds"), ("spheres", "closed, mani
            ("clean", "of these without self-intersections"), ("rms", "RMS, times ours (median)", 2),
            ("hausdorff", "Hausdorff, times ours (median)", 2), ("edges", "true edges (mean) [%]", 1),
            ("seconds", "time, times ours (median)", 2), ("megabytes", "memory, times ours (median)", 2)]  # fmt: skip
-RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one thread [s]", 2),
-        ("gain", "one thread / all", 2), ("peer", "CGAL advancing front [s]", 2),
-        ("ratio", "ours / advancing front", 2)]  # fmt: skip
+HANDLES = [("model", "cloud"), ("method", "method"), ("true_genus", "true genus"), ("genus", "genus"),
+           ("right", "closed, true genus, all points"),
+           *(one for one in QUALITY if one[0] in ("intersections", "rms", "hausdorff", "seconds"))]  # fmt: skip
+RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "one thread [s]", 2), ("front", f"{FRONT} [s]", 2),
+        ("gain", "one thread / ours", 2), ("ratio", "ours / front", 2), ("ours_busy", "ours, busy / alone", 2),
+        ("single_busy", "one thread, busy / alone", 2), ("front_busy", "front, busy / alone", 2)]  # fmt: skip
 PARAMETERS = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
 
 # Scans, quick and in full.
 GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety", "max", "igea"))
 WITH_PEERS = (("animal_2000",), ("hand_10000",))
+WITH_HANDLES = (("chair_2000",), ("torus_10000", "double_torus_10000", "chair_10000"))
 RACES = (("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))
 
 
@@ -53,7 +58,7 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
     for label, mesh, done in zip(programs, meshes, in_turn(commands, repeats, timeout)):
         row, problem = {"model": cloud.name, "method": label}, done[-1].problem
         compared.append((row, None if problem else mesh))
-        if problem and (context.quick or label == OURS):
+        if problem and context.quick:
             raise Failure(f"{label} on {cloud.name}: {problem}", "run it alone")
         if problem:
             row["failure"] = problem
@@ -61,7 +66,9 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
         output = done[-1].output
         told = json.loads(output if label == OURS else output.splitlines()[-1])  # libraries print, too
         row.update(seconds=median_seconds(done), megabytes=told["peak_memory_bytes"] / 1e6)
-        if label != OURS:
+        if label == OURS:
+            row["sound"] = is_sound(told)
+        else:
             parameters[label] = {"method": label, "library": told["library"], "parameters": told["parameters"]}
         row.update(context.programs.measure(mesh, cloud))
     return compared
@@ -86,19 +93,24 @@ def summarize(rows):
     return summary
 
 
+def _median_times(context, commands):
+    runs = in_turn(commands.values(), context.choose(1, 5), long_run=4.0)
+    return dict(zip(commands, map(median_seconds, runs)))
+
+
 def race(context, clouds):
-    """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
-    peer, mesh = find_peers(context).get("CGAL advancing front"), context.work / "race.ply"
+    """Ours, on all threads and on one, and the front in turn: alone, and beside busy processes."""
+    front, mesh = find_peers(context, [FRONT]).get(FRONT), context.work / "race.ply"
     rows = []
     for cloud in clouds:
         ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
-        others = [[peer, "advancing_front", cloud.points, mesh]] if peer else []
-        runs = in_turn([ours, [*ours, "-threads", "1"], *others], context.choose(1, 5), long_run=4.0)
-        all_threads, single, *of_peer = map(median_seconds, runs)
-        row = {"model": cloud.name, "ours": all_threads, "single": single, "gain": single / all_threads}
-        for seconds in of_peer:
-            row.update(peer=seconds, ratio=all_threads / seconds)
-        rows.append(row)
+        commands = {"ours": ours, "single": [*ours, "-threads", "1"]}
+        commands.update({"front": [front, PEERS[FRONT][1], cloud.points, mesh]} if front else {})
+        alone = _median_times(context, commands)
+        with busy_cores():
+            busy = {f"{name}_busy": s / alone[name] for name, s in _median_times(context, commands).items()}
+        ratio = {"ratio": alone["ours"] / alone["front"]} if front else {}
+        rows.append({"model": cloud.name, **alone, "gain": alone["single"] / alone["ours"], **ratio, **busy})
     context.report.table("race", RACE, rows)
 
 
@@ -124,11 +136,24 @@ def section(context):
             rows += [row for row, _ in compare(context, cloud, used, parameters, repeats=context.choose(1, 3))]
         report.table(f"{name}_summary", SUMMARY, summarize(rows))
         report.table(name, QUALITY, rows)
+    rows = []
+    for cloud in [programs.scan(name) for name in context.choose(*WITH_HANDLES)] + context.handles:
+        context.say(f"handles: {cloud.name}")
+        genus = programs.true_genus(cloud)
+        for row, _ in compare(context, cloud, find_peers(context, [FRONT]), parameters, repeats=context.choose(1, 3)):
+            found = [row.get(key) for key in ("parts", "openings", "genus", "used")]
+            rows.append({**row, "true_genus": genus, "right": found == [1, 0, genus, 100.0]})
+    report.text("""
+        ### Objects with handles
+
+        *Genus*: `-` if the mesh is not manifold and oriented.""")
+    report.table("handles", HANDLES, rows)
     context.say("in turn with the fastest peer")
     report.text("""
         ### In turn with the fastest peer
 
-        Whole processes in turn; medians of 5, or one run if it takes longer than 4 s.""")
+        Whole processes in turn; medians of 5, or one run if it takes longer than 4 s. *Busy*: beside a busy process on
+        each core.""")
     race(context, context.models + [programs.scan(name, truth=False) for name in context.choose(*RACES)])
     missing = ", ".join(label for label, program in peers.items() if not program)
     report.text("### Parameters of the peers")

@@ -1,11 +1,15 @@
 """Runs the project's tools, the referee and the peers, and measures their time from outside."""
 
 import collections
+import contextlib
 import dataclasses
 import json
+import os
 import pathlib
+import re
 import statistics
 import subprocess
+import sys
 import time
 
 from .quality import Mesh, Referee, compare
@@ -60,6 +64,18 @@ def in_turn(commands, repeats, timeout=None, long_run=1.0):
     return runs
 
 
+@contextlib.contextmanager
+def busy_cores():
+    """With a process on each core that does nothing but compute."""
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in os.sched_getaffinity(0)]
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.kill()
+            loop.wait()
+
+
 def median_seconds(runs):
     return statistics.median(one.seconds for one in runs)
 
@@ -70,6 +86,11 @@ def stage_seconds(report):
     for stage in report["stages"]:
         seconds[stage["name"]] += stage["seconds"]
     return seconds
+
+
+def is_sound(report):
+    """By the verdict of our tool."""
+    return report["usable"] and not report["failures"] and not any(one["is_fault"] for one in report["findings"])
 
 
 def flat(report, prefix=""):
@@ -106,7 +127,7 @@ class Programs:
 
     def scan(self, name, noise=None, truth=True):
         """A generated scan, by SHAPE_POINTS or the name of a preset; made once."""
-        shape, _, points = name.partition("_")
+        shape, points = re.fullmatch(r"(.+?)(?:_(\d+))?", name).groups()
         name = f"{name}_noise_{noise}" if noise else name
         cloud = Cloud(name, self.work / f"{name}.ply", self.work / f"{shape}_truth.ply" if truth else None)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
@@ -120,6 +141,10 @@ class Programs:
         """Runs the tool: the process, and the tool's report."""
         process = require([self.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options])
         return process, json.loads(process.output)
+
+    def true_genus(self, cloud):
+        """Of the true surface; None if that is not known, or no oriented manifold."""
+        return self.referee.topology(Mesh.read(cloud.truth))["genus"] if cloud.truth else None
 
     def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):
         """The referee's measures of a mesh, by the keys of the tables."""
