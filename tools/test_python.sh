@@ -8,6 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/common/test_steps.sh
 
 python=/usr/bin/python3
+cmake_args="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
@@ -42,7 +43,7 @@ END
 wheel_builds_and_installs() {
   git clone -q . "$work/clone" && "$python" -m venv --system-site-packages "$work/venv" &&
     (cd "$work/clone" && CCACHE_BASEDIR="$PWD" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" \
-      CMAKE_ARGS="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON" \
+      CMAKE_ARGS="$cmake_args" \
       PATH="$work/venv/bin:$PATH" bash -euc "$(doc_block doc/guide.md 1)") &&
     mkdir "$work/wheels" && mv "$work"/clone/*.whl "$work/wheels" && rm -rf "$work/clone"
 }
@@ -109,17 +110,26 @@ open3d_has_the_same_mesh() {
     test_clouds.Clouds.test_clouds_and_meshes_of_open3d_are_taken
 }
 
-source_distribution_builds() {
+source_distribution_is_made() {
   "$python" -c '
 import sys
 from setuptools import build_meta
-print(build_meta.build_sdist(sys.argv[1]))' "$work/sdist" &&
-    tar -C "$work" -xzf "$work"/sdist/spherical-param-*.tar.gz &&
-    cmake -S "$(echo "$work"/spherical-param-*/)" -B "$work/build" -G Ninja \
-      -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF \
-      -DSPHERICAL_PARAM_BUILD_PYTHON=ON &&
-    # All sources are there: what the builds before compiled shows that they do.
-    cmake --build "$work/build" --target spherical_param_python -- -n | grep . >/dev/null
+print(build_meta.build_sdist(sys.argv[1]))' "$work/sdist"
+}
+
+# installs <wheel or source distribution>: in an environment of Python, NumPy and, to build, wheel alone.
+installs() {
+  rm -rf "$work/empty" && "$python" -m venv "$work/empty" &&
+    ln -s /usr/lib/python3/dist-packages/{numpy,wheel}* "$(echo "$work"/empty/lib/python3*/site-packages)" &&
+    TMPDIR="$work" CCACHE_BASEDIR="$work" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CMAKE_ARGS="$cmake_args" \
+      "$work/empty/bin/python" -m pip install --no-index --no-build-isolation "$1" &&
+    "$work/empty/bin/python" -m pip check && (cd "$work" && "$work/empty/bin/python" -I -c '
+import numpy as np
+import spherical_param
+points = np.random.default_rng(1).normal(size=(500, 3))
+mesh = spherical_param.reconstruct(points / np.linalg.norm(points, axis=1, keepdims=True))
+assert len(mesh.triangles) == 996 and mesh.verdict == "A sound mesh.", mesh.verdict
+mesh.report("page.html")')
 }
 
 need_packages python
@@ -141,6 +151,9 @@ if check "wheel: builds and installs" wheel_builds_and_installs; then
   check "wheel: works" wheel_works || true
   check "wheel: needs NumPy alone" wheel_needs_numpy_alone || true
   check "wheel: needs no folder of the build" wheel_needs_no_folder_of_the_build || true
+  check "wheel: installs in an empty environment" installs "$(echo "$work"/wheels/*.whl)" || true
 fi
-check "source distribution: can be configured" source_distribution_builds || true
+if check "source distribution: made" source_distribution_is_made; then
+  check "source distribution: installs in an empty environment" installs "$(echo "$work"/sdist/*.tar.gz)" || true
+fi
 finish
