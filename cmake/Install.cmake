@@ -40,10 +40,9 @@ configure_package_config_file(
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfig.cmake
   INSTALL_DESTINATION ${package_dir}
   NO_SET_AND_CHECK_MACRO)
-# Before 1.0 a minor version may break the interface.
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion)
+  COMPATIBILITY SameMajorVersion)
 install(FILES
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfig.cmake
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfigVersion.cmake
