@@ -15,7 +15,7 @@ endif()
 spherical_param_require_version(qhull "${Qhull_VERSION}" 7.0 libqhull-dev)
 
 # FLANN's headers use lz4 on some systems without saying so.
-find_library(LZ4_LIBRARY lz4)
+find_library(LZ4_LIBRARY NAMES lz4 liblz4)
 find_path(SPHERICAL_PARAM_LZ4_INCLUDE_DIR lz4.h)
 find_path(SPHERICAL_PARAM_FLANN_INCLUDE_DIR flann/algorithms/kdtree_single_index.h)
 if(NOT SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
