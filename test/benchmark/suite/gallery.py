@@ -47,10 +47,10 @@ ROWS = [
     Row("floor", "", (0, 20), PCL + "correspondence_grouping/milk_cartoon_all_small_clorox.pcd", Y_UP, 2),
     Row("toys", "", (0, 0), OPENCV + "rs1_normals.ply", Y_UP),
     Row("lamp", "", (0, 20), PCL + "lamppost.pcd"),
-    Row("rabbit", "-surface open", (60, 15), scan=("holed_12000", 0, 0)),
+    Row("rabbit", "", (60, 15), scan=("holed_12000", 0, 0)),
     Row("noise", "-smoothing 30", (30, 10), scan=("animal_12000", 1.5, 0)),
-    Row("strays", "-outliers auto", (0, 10), scan=("hand_20000", 0, 1)),
-    Row("raw", "-smoothing 5", (30, 10), scan=("animal_200000", 0, 0), images=8),
+    Row("strays", "", (0, 10), scan=("hand_20000", 0, 1)),
+    Row("raw", "-consolidation auto", (30, 10), scan=("animal_200000", 0, 0), images=8),
 ]  # fmt: skip
 # The other clouds of these packages, for the table of scans.
 OTHERS = [
