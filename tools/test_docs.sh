@@ -46,7 +46,9 @@ compiled_by_pkg_config() {
 need_packages docs
 check "links" doc/check_links.py . || true
 if check "build" build_release && check "clone" cloned; then
-  check "site: built without warnings" cmake --build build/release --target doc || true
+  if check "site: built without warnings" cmake --build build/release --target doc; then
+    check "site: can be searched" grep -q "'Guide'" build/release/doc/html/search/pages_*.js || true
+  fi
   check "demo" demo || true
   if check "installation" installed; then
     check "compiled by pkg-config" compiled_by_pkg_config || true
