@@ -125,13 +125,14 @@ void toInput(OrderedPoints& nodes, Surface& result) {
 }
 
 void toInput(Consolidation& consolidation, Surface& result) {
-  // Those that came to one place are one vertex.
   result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
   result.consolidation = consolidation.report;
-  const auto vertices_of = std::count_if(
-      result.vertex_of_input.begin(), result.vertex_of_input.end(), [](Index v) { return v >= 0; });
-  result.consolidation.merged +=
-      static_cast<std::size_t>(vertices_of) - result.input_of_vertex.size();
+  // Of those with a vertex. Points that came to one place are one vertex.
+  Index merged = 0;
+  for (std::size_t point = 0; point < result.vertex_of_input.size(); ++point)
+    if (result.vertex_of_input[point] >= 0)
+      merged += consolidation.distinct_at[point];
+  result.consolidation.merged = static_cast<std::size_t>(merged) - result.input_of_vertex.size();
   Indexed<Index> first_of_point(result.vertex_of_input.size(), -1);
   Index input = 0;
   for (const Index point : consolidation.point_of_input) {

@@ -300,6 +300,9 @@ Consolidation toInput(const Positions& input, const OrderedPoints& nodes,
     result.point_of_input.push_back(number[point]);
     moved[i] = (result.points.col(number[point]) - input.col(i)).norm();
   }
+  result.distinct_at.assign(number.size(), 0);
+  for (const Index point : consolidated.point_of_node)
+    ++result.distinct_at[static_cast<std::size_t>(number[point])];
   ConsolidationReport& report = result.report;
   report.noise = std::ldexp(consolidated.noise, nodes.exponent);
   report.merged = nodes.input_of_node.size() - number.size();

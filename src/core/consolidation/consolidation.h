@@ -12,6 +12,7 @@ namespace spherical_param {
 struct Consolidation {
   Positions points;                   ///< 3 x m, m <= n, distinct [unit of the input]
   std::vector<Index> point_of_input;  ///< n entries: point of each input point
+  std::vector<Index> distinct_at;     ///< m entries: number of distinct input points there
   ConsolidationReport report;         ///< noise, merging, displacements
 };
 
