@@ -1,9 +1,8 @@
 #include "common/console.h"
 
 #include "common/errors.h"
+#include "common/system.h"
 #include "common/text.h"
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +28,7 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 Console::Console(Detail detail)
-    : detail_(detail), shows_bar_(detail != Detail::Nothing && isatty(STDOUT_FILENO) == 1) {}
+    : detail_(detail), shows_bar_(detail != Detail::Nothing && isTerminal()) {}
 
 Console::~Console() {
   // An error message begins on a line of its own.

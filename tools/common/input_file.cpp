@@ -1,16 +1,18 @@
 #include "common/input_file.h"
 
 #include "common/errors.h"
+#include "common/system.h"
 #include "common/text.h"
-
-#include <sys/stat.h>
-#include <sys/types.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 namespace spherical_param::tools {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t block_size = std::size_t{1} << 20;
 constexpr std::size_t smallest_block = std::size_t{1} << 12;
@@ -26,21 +28,23 @@ void failContent(const std::string& path, const std::string& reason) {
 }
 
 std::uint64_t checkInputFile(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    failReading(path, systemMessage(errno), "check the name of the file");
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    failReading(path, error.message(), "check the name of the file");
   }
-  if (S_ISDIR(status.st_mode)) {
+  if (fs::is_directory(status)) {
     failReading(path, "it is a directory", "give a file");
   }
-  if (!S_ISREG(status.st_mode)) {
+  if (!fs::is_regular_file(status)) {
     failReading(path, "it is not a regular file", "save the data to a file first");
   }
-  if (status.st_size == 0) {
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (size == 0) {
     failContent(path, "it is empty");
   }
   readBeginning(path, 1);
-  return static_cast<std::uint64_t>(status.st_size);
+  return size;
 }
 
 std::string readBeginning(const std::string& path, std::size_t size) {
@@ -49,12 +53,11 @@ std::string readBeginning(const std::string& path, std::size_t size) {
   if (!file) {
     failReading(path, systemMessage(errno), "check the rights of the file");
   }
-  struct stat status {};
-  if (fstat(fileno(file.get()), &status) == 0 && S_ISREG(status.st_mode)) {
-    size = std::min(size, static_cast<std::size_t>(status.st_size));
-  }
-  std::string content(size, '\0');
-  content.resize(std::fread(content.data(), 1, size, file.get()));
+  // No more than there is; what is not a regular file has the largest size.
+  std::error_code error;
+  std::string content(
+      static_cast<std::size_t>(std::min<std::uintmax_t>(size, fs::file_size(path, error))), '\0');
+  content.resize(std::fread(content.data(), 1, content.size(), file.get()));
   if (std::ferror(file.get()) != 0) {
     failReading(path, systemMessage(errno), "check the disk that holds the file");
   }
@@ -65,12 +68,11 @@ BlockReader::BlockReader(const std::string& path, std::uint64_t position,
                          const FileProgress& progress)
     : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose), progress_(progress),
       position_(position) {
-  struct stat status {};
-  if (!file_ || fstat(fileno(file_.get()), &status) != 0 ||
-      fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
+  if (!file_ || !seek(*file_, position)) {
     failReading(path, systemMessage(errno), "check the rights of the file");
   }
-  file_size_ = static_cast<std::uint64_t>(status.st_size);
+  std::error_code error;
+  file_size_ = fs::file_size(path, error);
   // The blocks are ours; another copy of each would only take time.
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);
 }

@@ -1,16 +1,12 @@
 #include "common/output_file.h"
 
 #include "common/errors.h"
+#include "common/system.h"
 #include "common/text.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
-#include <cstdio>
-#include <filesystem>
 #include <mutex>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -50,20 +46,9 @@ std::string directoryOf(const std::string& path) {
   return parent.empty() ? "." : parent.string();
 }
 
-/// Rights of the finished file: those of the file it replaces, else what the umask leaves.
-mode_t wantedMode(const std::string& target) {
-  struct stat status {};
-  if (stat(target.c_str(), &status) == 0) {
-    return status.st_mode & 07777;
-  }
-  const mode_t mask = umask(0);
-  umask(mask);
-  return 0666 & ~mask;
-}
-
-bool isRegularOrAbsent(const std::string& target) {
-  struct stat status {};
-  return stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+/// The error of the last call of the C library.
+std::error_code lastError() {
+  return {errno, std::generic_category()};
 }
 
 constexpr const char* another_place = "choose a place that exists and that you may write to";
@@ -76,25 +61,27 @@ constexpr const char* another_place = "choose a place that exists and that you m
 }  // namespace
 
 void checkOutputPath(const std::string& path) {
-  struct stat status {};
   const std::string target = resolveLinks(path);
-  if (stat(target.c_str(), &status) == 0) {
-    if (S_ISDIR(status.st_mode)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (fs::exists(status)) {
+    if (fs::is_directory(status)) {
       failPath(path, "it is a directory", "add the name of a file");
     }
-    if (access(target.c_str(), W_OK) != 0) {
-      failPath(path, systemMessage(errno), "make the file writable or choose another name");
+    if (const int refusal = writeRefusal(target)) {
+      failPath(path, systemMessage(refusal), "make the file writable or choose another name");
     }
-    if (!S_ISREG(status.st_mode)) {
+    if (!fs::is_regular_file(status)) {
       return;  // a device or pipe is written in its place: its directory does not matter
     }
-  } else if (errno != ENOENT) {
-    failPath(path, systemMessage(errno), another_place);
+  } else if (error && error != std::errc::no_such_file_or_directory) {
+    failPath(path, error.message(), another_place);
   }
   const std::string directory = directoryOf(target);
-  if (access(directory.c_str(), W_OK | X_OK) != 0) {
+  if (const int refusal = writeRefusal(directory)) {
     failPath(path,
-             errno == ENOENT ? "missing directory " + inQuotes(directory) : systemMessage(errno),
+             refusal == ENOENT ? "missing directory " + inQuotes(directory)
+                               : systemMessage(refusal),
              another_place);
   }
 }
@@ -108,69 +95,84 @@ bool isSameFile(const std::string& first, const std::string& second) {
 }
 
 OutputFile::OutputFile(const std::string& path) : path_(path), target_(resolveLinks(path)) {
-  if (!isRegularOrAbsent(target_)) {
-    descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) {
-      fail("write", errno);
+  std::error_code error;
+  const fs::file_status old = fs::status(target_, error);
+  if (fs::exists(old) && !fs::is_regular_file(old)) {
+    file_ = openDevice(target_);
+  } else {
+    if (fs::exists(old)) {
+      rights_ = old.permissions();
     }
-    return;
+    createTemporary();
   }
+  if (file_ == nullptr) {
+    fail("write", lastError());
+  }
+  // Each write goes to the system at once, so that its error is known.
+  std::setvbuf(file_, nullptr, _IONBF, 0);
+}
+
+void OutputFile::createTemporary() {
   // The name does not grow with the file's, which may be as long as a name can be.
-  std::string pattern = directoryOf(target_) + "/.spherical_param.XXXXXX";
-  // All memory before there is a file, which would stay if there were none.
-  std::set<std::string> made = {pattern};
-  auto node = made.extract(made.begin());
-  temporary_.reserve(pattern.size());
+  const std::string start = directoryOf(target_) + "/.spherical_param.";
+  std::random_device random;
   const std::lock_guard<std::mutex> lock(registry().mutex);
-  descriptor_ = mkostemp(pattern.data(), O_CLOEXEC);
-  if (descriptor_ < 0) {
-    fail("write", errno);
+  std::set<std::string>::node_type node;
+  std::string path;
+  do {
+    // All memory before there is a file, which would stay if there were none.
+    path = start + std::to_string(random());
+    std::set<std::string> made = {path};
+    node = made.extract(made.begin());
+    // What replaces a file that others may not read is not theirs to read before.
+    file_ = createFile(path, fs::perms{rights_ ? 0600U : 0666U});
+  } while (file_ == nullptr && errno == EEXIST);
+  if (file_ != nullptr) {
+    temporary_ = std::move(path);
+    registry().paths.insert(std::move(node));
   }
-  temporary_ = pattern;
-  node.value() = std::move(pattern);
-  registry().paths.insert(std::move(node));
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) {
-    close(descriptor_);
+  if (file_ != nullptr) {
+    std::fclose(file_);
   }
   if (!temporary_.empty()) {
     const std::lock_guard<std::mutex> lock(registry().mutex);
-    unlink(temporary_.c_str());
+    std::remove(temporary_.c_str());
     registry().paths.erase(temporary_);
   }
 }
 
 void OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) {
-      continue;
+    errno = 0;
+    const std::size_t count = std::fwrite(bytes.data(), 1, bytes.size(), file_);
+    bytes.remove_prefix(count);
+    written_ += count;
+    if (!bytes.empty() && errno != EINTR) {
+      fail("write", errno != 0 ? lastError() : std::make_error_code(std::errc::io_error));
     }
-    if (count <= 0) {
-      fail("write", count < 0 ? errno : ENOSPC);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-    written_ += static_cast<std::size_t>(count);
   }
 }
 
 void OutputFile::finish() {
-  if (descriptor_ < 0) {
+  if (file_ == nullptr) {
     return;
   }
-  struct stat status {};
-  const bool known = fstat(descriptor_, &status) == 0;
-  if (!temporary_.empty() && fchmod(descriptor_, wantedMode(target_)) != 0) {
-    fail("set the rights of", errno);
+  std::error_code error;
+  if (rights_) {
+    fs::permissions(temporary_, *rights_, error);
+    if (error) {
+      fail("set the rights of", error);
+    }
   }
   // Network file systems report a full disk only here.
-  if (close(std::exchange(descriptor_, -1)) != 0) {
-    fail("write", errno);
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) {
+    fail("write", lastError());
   }
-  if (!temporary_.empty() && (!known || static_cast<std::size_t>(status.st_size) != written_)) {
-    fail("write", EIO);
+  if (!temporary_.empty() && fs::file_size(temporary_, error) != written_) {
+    fail("write", error ? error : std::make_error_code(std::errc::io_error));
   }
 }
 
@@ -180,23 +182,25 @@ void OutputFile::commit() {
     return;
   }
   const std::lock_guard<std::mutex> lock(registry().mutex);
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    fail("write", errno);
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) {
+    fail("write", error);
   }
   registry().paths.erase(temporary_);
   temporary_.clear();
 }
 
-void OutputFile::fail(const std::string& action, int error_number) const {
-  const bool full = error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG;
-  throw Failure("cannot " + action + " " + inQuotes(path_) + ": " + systemMessage(error_number),
-                full ? "free space there or write to another place" : another_place);
+void OutputFile::fail(const std::string& action, const std::error_code& error) const {
+  throw Failure("cannot " + action + " " + inQuotes(path_) + ": " + error.message(),
+                isLackOfSpace(error) ? "free space there or write to another place"
+                                     : another_place);
 }
 
 void removeTemporaryFiles(const std::function<void()>& afterwards) {
   const std::lock_guard<std::mutex> lock(registry().mutex);
   for (const std::string& path : registry().paths) {
-    unlink(path.c_str());
+    std::remove(path.c_str());
   }
   afterwards();
 }

@@ -1,9 +1,13 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace spherical_param::tools {
 
@@ -37,13 +41,15 @@ public:
   void commit();
 
 private:
-  [[noreturn]] void fail(const std::string& action, int error_number) const;
+  void createTemporary();
+  [[noreturn]] void fail(const std::string& action, const std::error_code& error) const;
 
-  std::string path_;       ///< as the user knows it
-  std::string target_;     ///< behind symbolic links
-  std::string temporary_;  ///< empty: written directly
-  std::size_t written_ = 0;
-  int descriptor_ = -1;
+  std::string path_;                              ///< as the user knows it
+  std::string target_;                            ///< behind symbolic links
+  std::string temporary_;                         ///< empty: written directly
+  std::optional<std::filesystem::perms> rights_;  ///< of the file that it replaces
+  std::uintmax_t written_ = 0;
+  std::FILE* file_ = nullptr;
 };
 
 /// Removes the temporary files of all OutputFiles and calls a function, while no other thread can

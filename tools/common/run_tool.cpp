@@ -1,15 +1,12 @@
 #include "common/run_tool.h"
 
 #include "common/errors.h"
+#include "common/system.h"
 #include "common/text.h"
 #include "spherical_param/version.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -17,70 +14,15 @@
 #include <iterator>
 #include <new>
 #include <system_error>
-#include <thread>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace spherical_param::tools {
 namespace {
-
-/// Leaves the signals that end a program to a thread of their own: a handler could interrupt the
-/// making of a file, in one thread or another, and may do next to nothing. The signals must be
-/// blocked before there are other threads.
-void handleSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    // One that is ignored, as nohup does, stays ignored.
-    if (std::signal(number, SIG_DFL) == SIG_IGN) {
-      std::signal(number, SIG_IGN);
-    } else {
-      sigaddset(&signals, number);
-    }
-  }
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::thread([signals] {
-    int number = 0;
-    sigwait(&signals, &number);
-    removeTemporaryFiles([&] {
-      // Ends the tool as the signal would have, so that the caller sees what happened.
-      pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-      std::raise(number);
-    });
-  }).detach();
-  // A closed pipe or a size limit is an error of the write like any other.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-}
 
 int fail(const std::string& tool, const ToolError& error) {
   std::fflush(stdout);
   std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool.c_str(), oneLine(error.what()).c_str(),
                oneLine(error.remedy()).c_str());
   return static_cast<int>(error.exitCode());
-}
-
-/// A standard stream that the caller has closed stays so, but no file gets its number: what is
-/// meant for the terminal would be written into a mesh.
-void occupyStandardStreams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(stream, F_GETFD) == -1) {
-      // The lowest number that is free; the wrong way round, so that its use still fails.
-      [[maybe_unused]] const int opened =
-          open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-    }
-  }
-}
-
-/// Leaves memory that is freed with the process: to give it back and to take it anew is a tenth of
-/// the time of ten million points.
-void keepMemory() {
-#ifdef __GLIBC__
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-#endif
 }
 
 /// \return whether help or version was what the user wants.
@@ -147,7 +89,7 @@ int runTool(const ToolText& text, int argc, char** argv, const OptionTable& opti
   keepMemory();
   try {
     try {
-      handleSignals();
+      handleSignals(removeTemporaryFiles);
       const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
       const CommandLine command_line(words, options);
       if (!answerHelpOrVersion(command_line, text, options)) {
