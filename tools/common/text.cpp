@@ -1,5 +1,7 @@
 #include "common/text.h"
 
+#include "common/system.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -25,6 +27,19 @@ std::string_view withoutPlus(std::string_view text) {
   }
   return text;
 }
+
+#ifndef __cpp_lib_to_chars
+/// What from_chars() reads, which libc++ lacks for real numbers.
+std::optional<double> toRealByStrtod(std::string_view text) {
+  const std::string number(text);
+  char* end = nullptr;
+  const double value = strtodInC(number.c_str(), &end);
+  // strtod() also reads spaces, a plus sign and hexadecimal digits.
+  const bool is_other = number.empty() || number[0] == '+' ||
+                        number.find_first_of(" \t\n\v\f\rxX") != std::string::npos;
+  return is_other || end != number.data() + number.size() ? std::nullopt : std::optional(value);
+}
+#endif
 
 }  // namespace
 
@@ -80,6 +95,7 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 
 std::optional<double> toReal(std::string_view text) {
   text = withoutPlus(text);
+#ifdef __cpp_lib_to_chars
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || text.empty()) {
@@ -100,6 +116,9 @@ std::optional<double> toReal(std::string_view text) {
     return std::nullopt;
   }
   return value;
+#else
+  return toRealByStrtod(text);
+#endif
 }
 
 std::optional<double> toValue(std::string_view text) {
