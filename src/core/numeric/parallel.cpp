@@ -5,7 +5,9 @@
 #ifdef __linux__
 #include <sched.h>
 #endif
+#ifndef _WIN32
 #include <unistd.h>
+#endif
 
 #include <atomic>
 #include <condition_variable>
@@ -25,6 +27,15 @@ constexpr int kMaxThreads = 1024;
 
 thread_local std::size_t thread_number = 0;
 thread_local bool does_task_of_team = false;
+
+/// Tells a forked process from its parent.
+int processNumber() {
+#ifdef _WIN32
+  return 0;  // there is no fork
+#else
+  return getpid();
+#endif
+}
 
 /// Sets the number of this thread for as long as it works on a loop.
 class NumberInLoop {
@@ -47,17 +58,20 @@ public:
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
   ~Team() {
-    {
-      const std::lock_guard lock(mutex_);
-      is_ending_ = true;
-    }
-    has_changed_.notify_all();
+    end();
     for (std::thread& thread : threads_)
       thread.join();
   }
 
+  /// Ends the threads without waiting for them. They need its memory, which stays.
+  void abandon() {
+    end();
+    for (std::thread& thread : threads_)
+      thread.detach();
+  }
+
   /// False in a forked process, which has the memory of the team but not its threads.
-  bool isOfThisProcess() const { return process_ == getpid(); }
+  bool isOfThisProcess() const { return process_ == processNumber(); }
 
   /// Does all tasks, with `helpers` threads beside the calling one, or as many as the system
   /// grants.
@@ -85,6 +99,14 @@ public:
   }
 
 private:
+  void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_ending_ = true;
+    }
+    has_changed_.notify_all();
+  }
+
   /// Does tasks until there are no more.
   void work(std::size_t number) noexcept {
     const NumberInLoop number_in_loop(number);
@@ -118,7 +140,7 @@ private:
     }
   }
 
-  const pid_t process_ = getpid();
+  const int process_ = processNumber();
   std::size_t most_ = kMaxThreads;  ///< threads that the system grants
   std::vector<std::thread> threads_;
   std::atomic<std::size_t> next_{0};  ///< task to begin
@@ -137,8 +159,12 @@ private:
 /// Leaves the memory of a parent's team alone: its end would wait for threads that do not exist.
 struct EndTeam {
   void operator()(Team* team) const {
+#ifdef _WIN32
+    team->abandon();  // no thread ends while another one destroys what is local to it
+#else
     if (team->isOfThisProcess())
       std::default_delete<Team>()(team);
+#endif
   }
 };
 
