@@ -1,8 +1,8 @@
-# The flags that harden Debian's packages. On in optimised builds of this project: the tools read
-# files from anywhere. Not in another project's build, which has its own flags, and not with
+# The flags that harden Debian's packages. On in optimised builds of this project on Linux: the tools
+# read files from anywhere. Not in another project's build, which has its own flags, and not with
 # sanitizers, which check more.
 set(hardening_default OFF)
-if(PROJECT_IS_TOP_LEVEL AND NOT SPHERICAL_PARAM_SANITIZE
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND PROJECT_IS_TOP_LEVEL AND NOT SPHERICAL_PARAM_SANITIZE
    AND CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|MinSizeRel)$")
   set(hardening_default ON)
 endif()

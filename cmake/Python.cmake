@@ -11,11 +11,6 @@ elseif(SPHERICAL_PARAM_BUILD_PYTHON)
   if(NOT SPHERICAL_PARAM_BUILD_PYTHON STREQUAL "AUTO")
     set(python_required REQUIRED)
   endif()
-  # That of the system, whose packages are those of the system, and not one that stands before it in
-  # the PATH.
-  if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
-    set(Python3_EXECUTABLE /usr/bin/python3)
-  endif()
   find_package(Python3 3.9 ${python_required} COMPONENTS Interpreter Development.Module)
   if(Python3_FOUND)
     find_package(pybind11 2.10 ${python_required} CONFIG)

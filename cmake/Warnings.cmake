@@ -2,11 +2,15 @@
 function(spherical_param_compile_options target)
   # Contraction to fused multiply-add would make results differ between compilers, and the exact
   # predicates of the core wrong.
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
-                                           -ffp-contract=off
-                                           $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>)
-  if(SPHERICAL_PARAM_WERROR)
-    target_compile_options(${target} PRIVATE -Werror)
+  if(MSVC)
+    # 4996: functions of the standard that Microsoft has others for.
+    target_compile_options(${target} PRIVATE /W4 /wd4996 /permissive- /utf-8 /bigobj /fp:precise
+                                             $<$<BOOL:${SPHERICAL_PARAM_WERROR}>:/WX>)
+  else()
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+                                             -ffp-contract=off
+                                             $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>
+                                             $<$<BOOL:${SPHERICAL_PARAM_WERROR}>:-Werror>)
   endif()
   if(SPHERICAL_PARAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${SPHERICAL_PARAM_SANITIZE}

@@ -45,7 +45,7 @@ def run_example(language, text, project, folder, number, prefix):
     if language == "python":
         script = folder / f"example_{number}.py"
         script.write_text(text)
-        return run(["/usr/bin/python3", str(script)], folder)
+        return run([sys.executable, str(script)], folder)
     source, build = folder / f"source_{number}", folder / f"build_{number}"
     source.mkdir()
     (source / "main.cpp").write_text(text)

@@ -21,6 +21,9 @@ use_compiler_cache() {
 }
 use_compiler_cache
 
+# CMake is to find the Python of the system, which has the packages, not one before it in the PATH.
+export Python3_ROOT=/usr
+
 # Programs with sanitizers say where.
 export UBSAN_OPTIONS=print_stacktrace=1
 
