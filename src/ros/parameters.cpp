@@ -6,6 +6,7 @@
 #include <charconv>
 #include <functional>
 #include <limits>
+#include <locale>
 #include <sstream>
 #include <type_traits>
 
@@ -64,9 +65,10 @@ OptionValue toOption(const OptionRow& row, const Value& value) {
   if (const auto* number = std::get_if<double>(&value))
     return *number;
   if (const auto* text = std::get_if<std::string>(&value)) {
-    const char* end = text->data() + text->size();
+    std::istringstream stream(*text);  // libc++ has no from_chars() of real numbers
+    stream.imbue(std::locale::classic());
     double number = 0.0;
-    if (row.is_number && std::from_chars(text->data(), end, number).ptr == end)
+    if (row.is_number && stream >> number && stream.eof())
       return number;
     return *text;
   }
