@@ -125,7 +125,7 @@ void OutputFile::createTemporary() {
     std::set<std::string> made = {path};
     node = made.extract(made.begin());
     // What replaces a file that others may not read is not theirs to read before.
-    file_ = createFile(path, fs::perms{rights_ ? 0600U : 0666U});
+    file_ = createFile(path, rights_ ? fs::perms{0600} : fs::perms{0666});
   } while (file_ == nullptr && errno == EEXIST);
   if (file_ != nullptr) {
     temporary_ = std::move(path);
