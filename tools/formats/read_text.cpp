@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -313,9 +314,9 @@ private:
   std::vector<bool> is_left_out_;
 };
 
-/// Names three columns that nothing names by what is in them: colours are whole numbers of 0 to 255
-/// that are not all 0, normals have length 1, or are all 0. \return whether they are one of these.
-bool nameThree(std::vector<PointColumn>& columns, std::size_t first) {
+/// Names of three columns by what is in them: colours are whole numbers of 0 to 255 that are not
+/// all 0, normals have length 1, or are all 0. \return empty if they are neither
+std::vector<std::string> namesOfThree(const std::vector<PointColumn>& columns, std::size_t first) {
   bool are_normals = true;
   bool are_colors = true;
   for (std::size_t i = 0; i < columns[0].values.size() && (are_normals || are_colors); ++i) {
@@ -330,30 +331,35 @@ bool nameThree(std::vector<PointColumn>& columns, std::size_t first) {
     const double length = std::hypot(values[0], values[1], values[2]);
     are_normals = are_normals && (std::abs(length - 1.0) < 5e-3 || length == 0.0);
   }
-  const std::array<const char*, 3> normals = {"nx", "ny", "nz"};
-  const std::array<const char*, 3> colors = {"red", "green", "blue"};
-  for (std::size_t d = 0; d < 3 && (are_normals || are_colors); ++d) {
-    columns[first + d].name = are_normals ? normals[d] : colors[d];
-    columns[first + d].is_byte = !are_normals;
+  if (are_normals) {
+    return {"nx", "ny", "nz"};
   }
-  return are_normals || are_colors;
+  return are_colors ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>();
 }
 
 /// Names the columns after x, y and z that nothing names: by threes, perhaps with an intensity
-/// before or behind them.
+/// before, between or behind them, wherever most threes are colours or normals.
 void nameFurther(std::vector<PointColumn>& columns) {
-  const bool has_intensity = columns.size() % 3 == 1;
-  bool is_found = false;
-  for (std::size_t begin = has_intensity ? 4 : 3; !is_found && begin >= 3; --begin) {
-    for (std::size_t c = begin; c + 3 <= columns.size(); c += 3) {
-      is_found = nameThree(columns, c) || is_found;
+  const std::size_t end = columns.size();
+  std::map<std::size_t, std::string> best;
+  for (std::size_t intensity = end % 3 == 1 ? 3 : end; intensity <= end; intensity += 3) {
+    std::map<std::size_t, std::string> names;
+    for (std::size_t c = 3; c + 3 <= end; c += c == intensity ? 1 : 3) {
+      const auto three = c == intensity ? std::vector<std::string>() : namesOfThree(columns, c);
+      for (std::size_t d = 0; d < three.size(); ++d) {
+        names[c + d] = three[d];
+      }
     }
-    if (is_found && has_intensity) {
-      columns[begin == 4 ? 3 : columns.size() - 1].name = "intensity";
+    if (intensity < end && (!names.empty() || end == 4)) {
+      names[intensity] = "intensity";
+    }
+    if (names.size() > best.size()) {
+      best = std::move(names);
     }
   }
-  if (columns.size() == 4) {
-    columns[3].name = "intensity";
+  for (const auto& [c, name] : best) {
+    columns[c].name = name;
+    columns[c].is_byte = name == "red" || name == "green" || name == "blue";
   }
 }
 

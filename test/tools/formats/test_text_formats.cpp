@@ -129,6 +129,17 @@ TEST(TextClouds, OtherColumnsAreScalars) {
   EXPECT_EQ(read("pts", "1 2 3 -700 1 2 3\n").scalars[0].name, "intensity");
 }
 
+TEST(TextClouds, AnIntensityMayStandAnywhereAmongColoursAndNormals) {
+  for (const char* const line : {"1 2 3 0.5 7 8 9 0 0 1", "1 2 3 7 8 9 0.5 0 0 1",
+                                 "1 2 3 7 8 9 0 0 1 0.5", "1 2 3 0 0 1 0.5 7 8 9"}) {
+    const PointData data = read("asc", std::string(line) + "\n");
+    ASSERT_EQ(data.scalars.size(), 1U) << line;
+    EXPECT_EQ(data.scalars[0].values, (std::vector<double>{0.5})) << line;
+    EXPECT_EQ(data.normals, (std::vector<Normal>{{0.0F, 0.0F, 1.0F}})) << line;
+    EXPECT_EQ(data.colors.size(), 1U) << line;
+  }
+}
+
 TEST(TextClouds, NullNormalsAreNone) {
   for (const PointData& data : {read("xyz", "1 2 3 0 0 0\n4 5 6 0 0 0\n"),
                                 read("xyz", "x y z nx ny nz\n1 2 3 0 0 nan\n")}) {
