@@ -124,6 +124,13 @@ class Report(ToolTest):
             self.assertLessEqual(np.abs(frames[-1] - sphere[at]).max(), 1.01 * STEP)
             self.assertGreater(np.abs(frames[-1] - frames[0]).max(), 0.1)
 
+    def test_the_page_says_which_of_the_surfaces_it_shows(self):
+        run("scan", "pair", "scan.ply", "-points", 400)
+        run("reconstruction", "scan.ply", "out_%03d.ply", "-report", "page_%03d.html", "-quiet")
+        for number in (1, 2):
+            mesh = Page(f"page_00{number - 1}.html").data["mesh"]
+            self.assertEqual([mesh["surface"], mesh["surfaces"]], [number, 2])
+
     def test_smoothed_points_outliers_and_colours_are_shown(self):
         run("scan", "head", "scan.xyz", "-points", 1500)
         far = [(x, 0.1 * i, -2) for i, x in enumerate((0.9, 3, 3, 3, 3, 3))]

@@ -338,7 +338,9 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   json["mesh"] = {{"vertices", surface.vertexCount()},
                   {"triangles", surface.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
-                  {"shown_triangles", mesh.triangles.cols()}};
+                  {"shown_triangles", mesh.triangles.cols()},
+                  {"surface", &surface - cloud.result.surfaces.data() + 1},
+                  {"surfaces", cloud.result.surfaces.size()}};
   // Where only some vertices are shown, they are farther from each other.
   json["spacing"] =
       surface.measures.mean_edge_length * std::sqrt(static_cast<double>(surface.vertexCount()) /

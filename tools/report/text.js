@@ -38,7 +38,8 @@ function showVerdict({ report, tool, mesh }) {
   const title = String(report.input ?? 'Report').split(/[/\\]/).pop();
   document.title = `Report on ${title}`;
   byId('title').textContent = title;
-  byId('tool').textContent = `${tool.name} ${tool.version} ·`;
+  const part = mesh.surfaces > 1 ? ` surface ${mesh.surface} of ${number(mesh.surfaces)}:` : '';
+  byId('tool').textContent = `${tool.name} ${tool.version} ·${part}`;
   const triangles = counted(mesh.triangles, 'triangle');
   byId('size').textContent = `${counted(mesh.vertices, 'vertex', 'vertices')}, ${triangles}`;
 
