@@ -38,7 +38,7 @@ echo "demo.sh: building in $build (a minute or two at first, seconds later)"
 remedy="the message above says why; the tools are in $build/bin"
 "$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points 20000
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
-  -sphere "$out/sphere.ply" -json "$out/report.json"
+  -sphere "$out/sphere.ply" -report "$out/report.html"
 
 # The demo does not fail for the picture.
 if "$root/tools/draw.py" "$out/demo.png" "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" \
@@ -52,4 +52,4 @@ fi
 
 echo
 printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" sphere "$out/sphere.ply" \
-  report "$out/report.json" picture "$picture"
+  report "$out/report.html" picture "$picture"
