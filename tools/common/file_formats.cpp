@@ -37,6 +37,8 @@ constexpr std::array foreign_formats = {
     ForeignFormat{".gltf", "", "glTF, a mesh", "assimp export in.gltf out.ply"},
     ForeignFormat{".off", "OFF\n", "OFF, a mesh", "assimp export in.off out.ply"},
     ForeignFormat{".vtk", "# vtk DataFile", "VTK", "pcl_vtk2pcd in.vtk out.pcd"},
+    ForeignFormat{".gz", "\x1f\x8b", "gzip, compressed", "gunzip in.ply.gz"},
+    ForeignFormat{".zip", "PK\x03\x04", "ZIP, compressed", "unzip in.zip"},
     ForeignFormat{".bag", "#ROSBAG", "a bag of ROS",
                   "rosrun pcl_ros bag_to_pcd in.bag /points out"},
     ForeignFormat{".db3", "SQLite format 3", "a bag of ROS 2",
