@@ -311,7 +311,7 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
     Json& of_side = json[side == 0 ? "first" : "second"];
     addMapToJson(clouds[side], of_side);
     of_side["stages"] = toJson(clouds[side].cloud.stages);
-    of_side["findings"] = toJson(clouds[side].cloud.surface().findings);
+    of_side["findings"] = toJson(findingsOf(clouds[side]));
   }
   json["stages"] = toJson(morph.stages);
   json["peak_memory"] = peakMemoryToJson();

@@ -81,6 +81,12 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
   if (settings.handles == HandlesOnSphere::Refused) {
     requireSpheres(path, mapped.cloud, true);
+    for (Finding& finding : mapped.cloud.result.findings) {
+      if (finding.option == "handles") {  // the tool would refuse them
+        finding.option.clear();
+        finding.value.clear();
+      }
+    }
   }
   const Surface& surface = mapped.cloud.surface();
   console.begin("map");
