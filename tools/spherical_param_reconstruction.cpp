@@ -89,6 +89,10 @@ void checkNumbers(const Settings& settings) {
                          " is a pattern for several parts, but the output is one mesh",
                      "give -parts each, or a name without " + number_mark);
   }
+  if (isNumbered(settings.report.json)) {
+    throw UsageError(inQuotes(settings.report.json) + " is a pattern, but one report has all parts",
+                     "give -json a name without " + number_mark);
+  }
   for (const std::string& name : {settings.sphere, settings.page}) {
     if (isNumbered(name) && !isNumbered(settings.output)) {
       throw UsageError(inQuotes(name) + " is a pattern, but the output is one file",

@@ -69,6 +69,8 @@ class BadInput(ToolTest):
                                      ("in.stl", "STL", "pcl_converter"),
                                      ("in.glb", "glTF", "assimp export"),
                                      ("in.vtk", "VTK", "pcl_vtk2pcd"),
+                                     ("in.ply.gz", "compressed by gzip", "gunzip"),
+                                     ("in.zip", "a ZIP archive", "unzip"),
                                      ("in.bag", "a bag of ROS", "rosrun pcl_ros bag_to_pcd"),
                                      ("in.mcap in.db3", "a bag of ROS 2", "ros2 bag play")):  # fmt: skip
             for name in names.split():
@@ -84,7 +86,8 @@ class BadInput(ToolTest):
             "reconstruction in.xyz": {
                 "out": "'out' has an extension", "out.ply -sphere ''": "-sphere",
                 "./a.obj -sphere a.obj": "would overwrite", "out_%03d.ply -parts all": "is a pattern for several parts",
-                "out.ply -sphere s%03d.ply": "is a pattern, but the output is one file"},
+                "out.ply -sphere s%03d.ply": "is a pattern, but the output is one file",
+                "out_%03d.ply -json j_%03d.json": "is a pattern, but one report has all parts"},
             "scan": {"": "the shape is missing", "sphere": "the output file", "cube out.pcd": "unknown shape 'cube'",
                      "sphere out.stl": "extension", "sphere out.ply -truth ./out.ply": "would overwrite"},
             "remesh in.tif": {"out.tif": "geometry image"},
@@ -174,6 +177,8 @@ class BadInput(ToolTest):
         })  # fmt: skip
         call("reconstruction", "torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", 0)
         self.check_sphere(Mesh("s.ply"))
+        said = call("morph", "torus.xyz", "torus.xyz", "m.ply", "-frames", 2).stderr
+        self.assertRegex(said, "1 handle, cut: the mesh is a sphere\n")  # without an option that the tool refuses
 
     def test_files_that_cannot_be_read_are_a_failure(self):
         write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n")
