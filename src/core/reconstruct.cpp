@@ -54,8 +54,9 @@ bool mayBeOpen(const Options& options) {
     throw InvalidInput(
         "reconstruct: all points lie in one plane and form no patch there; add points "
         "that are not on a line");
-  throw InvalidInput("reconstruct: all points lie in one plane; add points outside of it, or set "
-                     "surface = open");
+  throw InvalidInput(
+      "reconstruct: all points lie in one plane; add points outside of it, or choose "
+      "an open surface");
 }
 
 /// The graph of a part; takes its agreed graph.
