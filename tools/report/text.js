@@ -80,6 +80,8 @@ function showTables({ report, command }) {
     ['Points not finite', report.left_out?.not_finite?.length || undefined],
     ['Duplicates', report.duplicates],
     ['Stray points left out', report.left_out?.outliers?.length || undefined],
+    ['Points in other parts', report.left_out?.other_parts?.length || undefined],
+    ['Points that cannot be meshed', report.left_out?.unmeshed?.length || undefined],
     ['Stray points in the mesh', report.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
@@ -91,7 +93,7 @@ function showTables({ report, command }) {
     ['Mean edge length', measures?.mean_edge_length],
     ['Size', measures?.box_max?.map((x, c) => number(x - measures.box_min[c])).join(' × ')],
     ['Residual', embedding.residual],
-    ['Stopped', embedding.stop_reason?.replaceAll('_', ' ')],
+    ['Embedding', embedding.stop_reason === 'unfinished' ? null : embedding.stop_reason?.replaceAll('_', ' ')],
     ['Points moved by smoothing (max)', report.smoothing?.max_displacement],
     ['Peak memory [bytes]', report.peak_memory_bytes],
   ].filter(([, value]) => value !== undefined && value !== null));
