@@ -124,6 +124,7 @@ struct SurfaceDiagnosis {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest finding
   std::vector<Handle> handles;                   ///< in descending number of edges
   std::vector<PartBridge> bridges;               ///< in descending number of points
+  std::size_t joined_parts = 0;                  ///< that the bridges join; they may form cycles
   bool is_one_sided = false;  ///< like a Moebius strip or a Klein bottle; the mesh is torn
   bool is_on_lines = false;   ///< the points lie along lines, like contours, far from each other
   bool fills_volume = false;  ///< the points fill a volume: there is no surface

@@ -218,6 +218,7 @@ constexpr ResultField visitFields(const SurfaceDiagnosis*, const Visit& visit) {
         &Of::edges_outside_graph);
   visit({"handles", "in descending number of edges"}, &Of::handles);
   visit({"bridges", "in descending number of points"}, &Of::bridges);
+  visit({"joined_parts", "number of parts that the bridges join"}, &Of::joined_parts);
   visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
         unlessEmpty(&Of::triangle_marks));
   return {"Diagnosis", "Evidence against a closed surface without handles, and its place."};

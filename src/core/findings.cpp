@@ -77,11 +77,12 @@ bool isFolded(const Options& options, const Surface& result) {
          (isRaw(options) && result.diagnosis.edges_outside_graph > max_edges_outside);
 }
 
-Finding partsOf(const std::vector<PartBridge>& bridges, const Options& given) {
-  const PartBridge& bridge = bridges.front();
-  const std::string text = counted(bridges.size() + 1, "separate part") + " (" +
-                           (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) +
-                           " and " + counted(bridge.other_points, "point") + ")";
+Finding partsOf(const SurfaceDiagnosis& diagnosis, const Options& given) {
+  const PartBridge& bridge = diagnosis.bridges.front();
+  const std::string text = counted(diagnosis.joined_parts, "separate part") + " (" +
+                           (diagnosis.joined_parts > 2 ? "two of them of " : "") +
+                           grouped(bridge.points) + " and " +
+                           counted(bridge.other_points, "point") + ")";
   const bool is_each = withTopology(given).parts == PartsMode::Each;
   const bool are_small = bridge.other_points < static_cast<std::size_t>(given.min_points);
   if (is_each && bridge.points >= 4)
@@ -184,7 +185,7 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
     findings.push_back(
         shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false));
   if (!diagnosis.bridges.empty())
-    findings.push_back(partsOf(diagnosis.bridges, given));
+    findings.push_back(partsOf(diagnosis, given));
   if (const std::optional<Finding> filled = filledOf(result, given))
     findings.push_back(*filled);
   if (isRough(result) && !result.isFolded())
@@ -249,7 +250,7 @@ std::string verdictOf(const Options& options, const Surface& result) {
     text += (result.genus() > 0 ? " and " : " with ") + counted(result.boundary.size(), "opening");
   std::vector<std::string> doubts;
   if (!diagnosis.bridges.empty())
-    doubts.emplace_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
+    doubts.emplace_back("joins " + counted(diagnosis.joined_parts, "separate part"));
   if (result.filledOpenings() > 0)
     doubts.emplace_back("fills " + counted(result.filledOpenings(), "opening"));
   if (diagnosis.is_one_sided)

@@ -29,6 +29,7 @@ void addBridge(Surface& result, std::size_t points, std::size_t other_points) {
   bridge.points = points;
   bridge.other_points = other_points;
   result.diagnosis.bridges.push_back(bridge);
+  result.diagnosis.joined_parts = result.diagnosis.bridges.size() + 1;
 }
 
 struct Case {

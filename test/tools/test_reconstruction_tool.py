@@ -25,7 +25,8 @@ TYPES = {
     "embedding": {"iterations": 0, "start_level": 0, "residual": 0.1, "centroid_norm": 0.1, "converged": True,
                   "fallback_start": True, "stop_reason": "", "barrier": "", "residuals": [],
                   "levels": [{"newton_iterations": 0}]},
-    "diagnosis": {"kind": "", "edges_outside_graph": 0.1, "looks_closed_genus0": True, "handles": [], "bridges": []},
+    "diagnosis": {"kind": "", "edges_outside_graph": 0.1, "looks_closed_genus0": True, "handles": [], "bridges": [],
+                  "joined_parts": 0},
     "measures": {"volume": 0.1, "area": 0.1, "mean_edge_length": 0.1, "box_min": [0.1, 0.1, 0.1],
                  "box_max": [0.1, 0.1, 0.1], "centroid": [0.1, 0.1, 0.1], "inertia": [[0.1], [0.1], [0.1, 0.1, 0.1]]},
 }  # fmt: skip

@@ -15,6 +15,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -244,15 +245,15 @@ void findTornHandles(const MeshAndGraph& surface, const std::vector<Edge>& apart
 
 // --- Parts ---------------------------------------------------------------------------------------
 
-/// Pairs of parts with a gap of at least 4 times the distance of the points there; all ends are
-/// listed.
+/// Pairs of parts with a gap of at least 4 times the distance of the points there, and the number
+/// of parts that these are; all ends are listed.
 ///
 /// \param edges of the bridges, ascending.
-std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& graph,
-                                    const std::vector<Bridge>& bridges,
-                                    const std::vector<Edge>& edges) {
+void findBridges(const MeshAndGraph& surface, const Graph& graph,
+                 const std::vector<Bridge>& bridges, const std::vector<Edge>& edges,
+                 SurfaceDiagnosis& result) {
   if (bridges.empty())
-    return {};
+    return;
   // There are no bridges within a part.
   UnionFind parts(graph.size());
   for (const Index a : graph.nodes())
@@ -266,7 +267,7 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
     joint.gap = joint.vertices.empty() ? length : std::min(joint.gap, length);
     joint.vertices.insert(joint.vertices.end(), {from, to});
   }
-  std::vector<PartBridge> result;
+  std::vector<Edge> apart;
   for (auto& [pair, joint] : joints) {
     std::vector<double> spacings;
     for (const Index v : joint.vertices)
@@ -274,17 +275,24 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
     sortUnique(joint.vertices);
     std::sort(spacings.begin(), spacings.end());
     joint.spacing = spacings[(spacings.size() - 1) / 2];
-    if (pair[0] == pair[1] || joint.gap < 4.0 * joint.spacing)
+    if (pair[0] == pair[1] || joint.gap < 4.0 * joint.spacing) {
+      parts.unite(pair[0], pair[1]);
       continue;
+    }
+    apart.push_back(pair);
     const Positions ends = surface.points(Eigen::all, joint.vertices);
     joint.center = ends.rowwise().mean();
     joint.points = std::min(sizes[pair[0]], sizes[pair[1]]);
     joint.other_points = std::max(sizes[pair[0]], sizes[pair[1]]);
-    result.push_back(std::move(joint));
+    result.bridges.push_back(std::move(joint));
   }
-  std::stable_sort(result.begin(), result.end(),
+  std::stable_sort(result.bridges.begin(), result.bridges.end(),
                    [](const PartBridge& a, const PartBridge& b) { return a.points > b.points; });
-  return result;
+  std::set<Index> separate;
+  for (const auto& [a, b] : apart)
+    separate.insert({parts.find(a), parts.find(b)});
+  // A gap that is closed elsewhere joins two, too.
+  result.joined_parts = apart.empty() ? 0 : std::max<std::size_t>(2, separate.size());
 }
 
 // --- All together --------------------------------------------------------------------------------
@@ -381,7 +389,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   SurfaceDiagnosis result;
   result.edges_outside_graph = static_cast<double>(differences.outside_graph) /
                                (1.5 * static_cast<double>(triangles.cols()));
-  result.bridges = findBridges(surface, graph, bridges, bridge_edges);
+  findBridges(surface, graph, bridges, bridge_edges, result);
   // A mesh that was squeezed through a bridge tears neighbours apart without handles.
   if (result.bridges.empty())
     findTornHandles(surface, differences.apart, bridge_edges, openings, options, result);
