@@ -68,7 +68,7 @@ OptionValue toOption(const OptionRow& row, const Value& value) {
     std::istringstream stream(*text);  // libc++ has no from_chars() of real numbers
     stream.imbue(std::locale::classic());
     double number = 0.0;
-    if (row.is_number && stream >> number && stream.eof())
+    if (row.is_number && stream >> std::noskipws >> number && stream.eof())
       return number;
     return *text;
   }

@@ -71,6 +71,13 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
          addBridge(r, 1, 4);
          addBridge(r, 1, 3);
        }},
+      // On a ring.
+      {{"3 separate parts (two of them of 3 and 4 points)", "", "", true},
+       [](Surface& r) {
+         for (const std::size_t points : {3, 2, 2})
+           addBridge(r, points, 4);
+         r.diagnosis.joined_parts = 3;
+       }},
       {{"opening of 432 points, filled", "surface", "open", true},
        [](Surface& r) { r.openings = {filledOpening(432)}; }},
       {{"2 openings, the largest of 432 points, filled", "surface", "open", true},

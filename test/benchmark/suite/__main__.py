@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import sys
 import tempfile
+import textwrap
 import time
 
 from . import clean, comparison, gallery, machine, maps, paper, scaling
@@ -67,7 +68,7 @@ def main(words):
         context = Context(arguments, work)
         report = context.report
         provenance = machine.describe(ROOT, arguments.build)
-        report.blocks["provenance"] = provenance + "\n"
+        report.blocks["provenance"] = textwrap.fill(provenance, 120) + "\n"
         report.text(f"""
             # Benchmark report of pcl_spherical_param
 

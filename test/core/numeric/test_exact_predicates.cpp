@@ -106,7 +106,8 @@ TEST(ExactPredicates, InCircleIsExactWhereDifferencesAreNot) {
   for (int i = 0; i < 1000; ++i) {
     const std::int64_t y = mantissa(random);
     // In units of 2^-60: |d - (65, 0)|^2 - 65^2 = x^2 - 130 2^60 x + y^2.
-    const auto tie = static_cast<std::int64_t>(static_cast<Wide>(y) * y / 130 >> 60);
+    const double square = static_cast<double>(y) * static_cast<double>(y);
+    const auto tie = static_cast<std::int64_t>(std::ldexp(square / 130.0, -60));
     for (std::int64_t x = std::max<std::int64_t>(tie - 2, 0); x <= tie + 2; ++x) {
       const Wide beyond =
           static_cast<Wide>(x) * x - (static_cast<Wide>(130 * x) << 60) + static_cast<Wide>(y) * y;

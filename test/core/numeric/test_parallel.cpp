@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#ifdef __linux__
 #include <sys/resource.h>
+#endif
 
 #include <atomic>
 #include <chrono>
@@ -106,6 +108,7 @@ std::size_t threadsUsed(std::size_t threads) {
   return used.size();
 }
 
+#ifdef __linux__
 std::size_t threadsOfProcess() {
   const std::filesystem::directory_iterator tasks("/proc/self/task");
   return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
@@ -126,6 +129,7 @@ TEST(Parallel, ThreadsAreStartedOnceAndEndWithTheirOwner) {
   }).join();
   EXPECT_EQ(threadsOfProcess(), before);
 }
+#endif
 
 TEST(Parallel, ALoopInATaskOfAnotherHasOneThread) {
   std::atomic<std::size_t> done{0};
@@ -143,6 +147,7 @@ TEST(Parallel, ALoopInATaskOfAnotherHasOneThread) {
   EXPECT_EQ(done, 32 * 3 * kBlockSize);
 }
 
+#ifndef _WIN32  // has no fork
 TEST(ParallelDeathTest, AForkedProcessStartsThreadsOfItsOwnAndEnds) {
   EXPECT_EQ(threadsUsed(3), 3U);
   // Test programs fork for this; both ends must come.
@@ -151,8 +156,9 @@ TEST(ParallelDeathTest, AForkedProcessStartsThreadsOfItsOwnAndEnds) {
   EXPECT_EXIT(std::exit(0), testing::ExitedWithCode(0), "");
 #endif
 }
+#endif
 
-#ifndef SPHERICAL_PARAM_SANITIZED
+#if defined(__linux__) && !defined(SPHERICAL_PARAM_SANITIZED)
 TEST(ParallelDeathTest, WhereThreadsCannotBeStartedFewerDoTheWork) {
   // A hundred stacks need more address space.
   const auto limited = [] {
