@@ -74,7 +74,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       // On a ring.
       {{"3 separate parts (two of them of 3 and 4 points)", "", "", true},
        [](Surface& r) {
-         for (const std::size_t points : {3, 2, 2})
+         for (const std::size_t points : {3U, 2U, 2U})
            addBridge(r, points, 4);
          r.diagnosis.joined_parts = 3;
        }},
