@@ -311,7 +311,7 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
     Json& of_side = json[side == 0 ? "first" : "second"];
     addMapToJson(clouds[side], of_side);
     of_side["stages"] = toJson(clouds[side].cloud.stages);
-    of_side["findings"] = toJson(findingsOf(clouds[side]));
+    of_side["findings"] = toJson(clouds[side].cloud.result.findings);
   }
   json["stages"] = toJson(morph.stages);
   json["peak_memory"] = peakMemoryToJson();
@@ -363,7 +363,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   printFigures(json, run.console);
   run.publish([&] { return json; }, summaryOf(settings, clouds, morph));
   for (std::size_t side = 0; side < 2; ++side) {
-    run.add(settings.inputs[side], findingsOf(clouds[side]));
+    run.add(settings.inputs[side], clouds[side].cloud.result.findings);
   }
   for (std::size_t i = 0; i < morph.pairs.size(); ++i) {
     if (!morph.reasons[i].empty()) {

@@ -311,7 +311,7 @@ void makeFromImage(const Settings& settings, Output& output, Console& console) {
 
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,
                                 const Output& output) {
-  std::vector<Finding> findings = findingsOf(mapped);
+  std::vector<Finding> findings = mapped.cloud.result.findings;
   if (output.self_intersections > 0) {
     findings.push_back({"the output has self-intersections" +
                             std::string(settings.readsImage() || settings.series

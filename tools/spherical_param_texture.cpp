@@ -184,7 +184,7 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
 }
 
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped) {
-  std::vector<Finding> findings = findingsOf(mapped);
+  std::vector<Finding> findings = mapped.cloud.result.findings;
   if (mapped.colors.empty() && !settings.cells) {
     findings.push_back({"the cloud has no colours: the texture is a checkerboard", "", "", false});
   }

@@ -38,6 +38,18 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud,
   return colors;
 }
 
+/// Leaves them no option that the tool would refuse.
+void fitFindings(const ProductSettings& settings, std::vector<Finding>& findings) {
+  for (Finding& finding : findings) {
+    if (finding.option == "parts") {
+      finding.value = "largest";
+    } else if (finding.option == "handles" && settings.handles == HandlesOnSphere::Refused) {
+      finding.option.clear();
+      finding.value.clear();
+    }
+  }
+}
+
 }  // namespace
 
 ProductSettings::ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map)
@@ -81,13 +93,8 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
   if (settings.handles == HandlesOnSphere::Refused) {
     requireSpheres(path, mapped.cloud, true);
-    for (Finding& finding : mapped.cloud.result.findings) {
-      if (finding.option == "handles") {  // the tool would refuse them
-        finding.option.clear();
-        finding.value.clear();
-      }
-    }
   }
+  fitFindings(settings, mapped.cloud.result.findings);
   const Surface& surface = mapped.cloud.surface();
   console.begin("map");
   SphereMapOptions options = settings.map;
@@ -134,16 +141,6 @@ std::vector<Color> truncated(const Eigen::Matrix4Xd& colors) {
         static_cast<std::uint8_t>(std::clamp(colors(static_cast<Eigen::Index>(i)), 0.0, 255.0));
   }
   return bytes;
-}
-
-std::vector<Finding> findingsOf(const MappedCloud& mapped) {
-  std::vector<Finding> findings = mapped.cloud.result.findings;
-  for (Finding& finding : findings) {
-    if (finding.option == "parts") {
-      finding.value = "largest";
-    }
-  }
-  return findings;
 }
 
 void addMapToJson(const MappedCloud& mapped, Json& json) {

@@ -36,7 +36,7 @@ void parseProductOptions(const CommandLine& command_line, ProductSettings& setti
 
 /// A cloud, its mesh, and the map of that to the sphere.
 struct MappedCloud {
-  CloudReconstruction cloud;  ///< with the stage "map" as the last
+  CloudReconstruction cloud;  ///< with the stage "map" as the last, and options that the tool takes
   CutMesh mesh;               ///< its points are moved, if that was asked for
   std::vector<Color> colors;  ///< of its vertices, or none if the cloud has no colours
   SphereMap map;              ///< of `mesh`
@@ -57,9 +57,6 @@ Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLoc
                           double start);
 /// Colours without the fractions of their channels.
 std::vector<Color> truncated(const Eigen::Matrix4Xd& colors);
-
-/// What the library found, with options that tools of one surface take.
-std::vector<Finding> findingsOf(const MappedCloud& mapped);
 
 /// Adds the size of the mesh and the faults of the map: `input_points`, `vertices`,
 /// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
