@@ -67,11 +67,6 @@ int writeRefusal(const std::string& path) {
   return _waccess(std::filesystem::path(path).c_str(), 2) == 0 ? 0 : errno;
 }
 
-double strtodInC(const char* text, char** end) {
-  static const _locale_t classic = _create_locale(LC_ALL, "C");
-  return _strtod_l(text, end, classic);
-}
-
 #else
 
 namespace {
@@ -152,10 +147,12 @@ int writeRefusal(const std::string& path) {
   return access(path.c_str(), wanted) == 0 ? 0 : errno;
 }
 
+#ifndef __cpp_lib_to_chars
 double strtodInC(const char* text, char** end) {
   static const locale_t classic = newlocale(LC_ALL_MASK, "C", nullptr);
   return strtod_l(text, end, classic);
 }
+#endif
 
 #endif
 

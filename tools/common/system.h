@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -43,7 +44,10 @@ int writeRefusal(const std::string& path);
 /// Whether a file cannot grow, for the disk, its quota or a limit.
 bool isLackOfSpace(const std::error_code& error);
 
-/// strtod() in the locale "C", whatever the program's is.
+#ifndef __cpp_lib_to_chars
+/// strtod() in the locale "C", whatever the program's is, for libraries whose from_chars() reads no
+/// real numbers.
 double strtodInC(const char* text, char** end);
+#endif
 
 }  // namespace spherical_param::tools
