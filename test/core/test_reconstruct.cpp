@@ -79,6 +79,16 @@ TEST(Reconstruct, NastySetsAreMeshed) {
       }
 }
 
+TEST(Reconstruct, OfASpaceCurveEnds) {
+  const Positions curve = pointsAt(200, [](Index i) {
+    const double t = i / 99.5 - 1.0;
+    return Eigen::Vector3d(t, t * t, t * t * t);
+  });
+  for (const char* surface : {"auto", "open"})
+    EXPECT_EQ(surfaceOf(curve, given("surface", surface)).vertexCount(), 200U);
+  expectGuarantees(curve, mesh(curve, sphere()));
+}
+
 TEST(Reconstruct, AMeshOfTheFacesOfTheGraphTakesThePlaceOfATangle) {
   // The embedding of spheres side by side is folded.
   const Positions points = inARow(4, 2.6, spiralSphere(150));

@@ -368,18 +368,22 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
   TriangleList found = trianglesOf(points, rotation);
   Triangles faces = matrixOf(found);
   FaceMesh mesh;
-  for (bool is_cut = true; std::exchange(is_cut, false);) {
+  for (long long last = std::numeric_limits<long long>::max();;) {
     mesh.triangles =
         joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
-    if (mesh.triangles.cols() == 0)
+    // A triangle whose own boundary loop is filled is no sphere of at least 4 vertices.
+    if (mesh.triangles.cols() < 4)
       return std::nullopt;
-    if (checkTopology(mesh.triangles, graph.size()).genus == static_cast<long long>(genus))
+    const long long found_genus = *checkTopology(mesh.triangles, graph.size()).genus;
+    if (found_genus == static_cast<long long>(genus) || found_genus == 0)
       break;
+    if (found_genus >= last)
+      return std::nullopt;
+    last = found_genus;
     const SphereMesh whole(mesh.triangles, graph.size());
     PlanarRegion region(points, whole);
     region.grow(0);
     faces = filtered(mesh.triangles, [&](Eigen::Index t) { return region.contains(t); });
-    is_cut = faces.cols() < mesh.triangles.cols();
   }
   std::sort(found.begin(), found.end());
   for (const auto& t : mesh.triangles.colwise()) {
@@ -391,10 +395,16 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
 
 Triangles withAllNodes(const Positions& points, const Graph& graph, const Triangles& closed) {
   SphereMesh mesh(closed, graph.size());
-  for (bool has_changed = true; std::exchange(has_changed, false);)
-    for (const Index v : graph.nodes())
-      if (mesh.triangleAt(v) < 0 && insert(points, graph, v, mesh))
-        has_changed = true;
+  Indexed<Index> due = firstIndices(graph.size());
+  for (Index i = 0; i < due.count(); ++i) {
+    const Index v = due[i];
+    if (mesh.triangleAt(v) >= 0 || !insert(points, graph, v, mesh))
+      continue;
+    // Neighbours that had none in the mesh have one now.
+    for (const Index w : graph.row(v))
+      if (mesh.triangleAt(w) < 0)
+        due.push_back(w);
+  }
   return mesh.triangles();
 }
 

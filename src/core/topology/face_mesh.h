@@ -30,7 +30,7 @@ struct FaceMesh {
 /// \param points 3 x n.
 /// \param graph  n nodes, connected.
 /// \param genus  that is kept; another one becomes 0.
-/// \return nothing if the graph has no faces. Cost: O(n log n).
+/// \return nothing if the faces do not enclose at least 4 nodes. Cost: O(n log n).
 std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
                                   const Execution& execution);
 

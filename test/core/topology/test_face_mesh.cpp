@@ -116,5 +116,16 @@ TEST(FaceMesh, IsNoneWithoutFaces) {
   EXPECT_FALSE(meshOf(line, localDelaunayGraph(line).graph, 0));
 }
 
+TEST(FaceMesh, IsNoneOfOneTriangle) {
+  // Both of its sides would be a closed mesh of 3 vertices, which cannot take in the tail.
+  Positions points(3, 5);
+  points << 0, 1, 0, 2, 3, 0, 0, 1, 0, 0, 0, 0, 0, 0.1, 0.3;
+  Triangles triangle(3, 1);
+  triangle << 0, 1, 2;
+  const Graph graph = withEdges(graphOfMesh(points, triangle), {{1, 3, edgeLength(points, 1, 3)},
+                                                                {3, 4, edgeLength(points, 3, 4)}});
+  EXPECT_FALSE(meshFaces(points, graph, 0, {}));
+}
+
 }  // namespace
 }  // namespace spherical_param::test
