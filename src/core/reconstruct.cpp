@@ -145,7 +145,10 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
 Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
-  for (;;) {
+  // Graph and topology are made anew with the points that were added. Real scans take up to 3
+  // rounds.
+  constexpr int max_rounds = 5;
+  for (int round = 1;; ++round) {
     Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
     const bool is_flat = internal::areCoplanar(selection.pointsOf(part));
     if (is_flat && !mayBeOpen(options))
@@ -157,7 +160,8 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     if (options.method == Method::Default)  // only the tangent Delaunay graph shows openings
       topology = findTopology(nodes.points, graph.graph, is_flat, std::ldexp(1.0, nodes.exponent),
                               options, clock);
-    if (selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
+    if (round < max_rounds &&
+        selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
       continue;
     CloudInfo info = selection.infoOf(part);
     if (info.normals.cols() > 0)

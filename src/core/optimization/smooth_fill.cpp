@@ -276,7 +276,9 @@ public:
           patches_[i].bend = static_cast<Bend>(patches_[i].bend + 1);
           has_changed = true;
         }
-      if (!has_changed && fill.self_intersections.size() <= given.size())
+      const bool is_given = std::all_of(patches_.begin(), patches_.end(),
+                                        [](const auto& patch) { return patch.bend == AsGiven; });
+      if (!has_changed && (is_given || fill.self_intersections.size() <= given.size()))
         return fill;
       for (FillPatch& patch : patches_)
         patch.bend = has_changed ? patch.bend : AsGiven;

@@ -132,7 +132,7 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 }
 
 /// Moves all points by one distance along their normals so that the volume becomes the given one:
-/// Newton's method, as long as it gets nearer.
+/// Newton's method, as long as it halves the error.
 void Filter::restoreVolume(Positions& points, double volume) const {
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
@@ -152,6 +152,8 @@ void Filter::restoreVolume(Positions& points, double volume) const {
     if (!(std::abs(new_error) < std::abs(error)))
       return;
     points.swap(moved);
+    if (std::abs(new_error) > 0.5 * std::abs(error))
+      return;
     error = new_error;
   }
 }
