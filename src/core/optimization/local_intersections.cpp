@@ -36,15 +36,22 @@ void LocalIntersections::remove(Index triangle) {
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {
-  forEachIntersecting(face, face.triangle, [&](const Face& other) {
+  std::size_t exact_tests = 0;
+  forEachIntersecting(face, face.triangle, exact_tests, [&](const Face& other) {
     triangles.push_back(other.triangle);
     return true;
   });
 }
 
 int LocalIntersections::count(const Face& face, Index without, int most) const {
+  std::size_t exact_tests = 0;
+  return count(face, without, most, exact_tests);
+}
+
+int LocalIntersections::count(const Face& face, Index without, int most,
+                              std::size_t& exact_tests) const {
   int found = 0;
-  forEachIntersecting(face, without, [&](const Face&) { return ++found <= most; });
+  forEachIntersecting(face, without, exact_tests, [&](const Face&) { return ++found <= most; });
   return found;
 }
 

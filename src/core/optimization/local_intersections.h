@@ -30,21 +30,31 @@ public:
   /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
   /// beyond `most`.
   int count(const Face& face, Index without, int most = std::numeric_limits<int>::max() - 1) const;
+  /// The same. \param exact_tests receives the number of triangles that are not evidently apart
+  /// more.
+  int count(const Face& face, Index without, int most, std::size_t& exact_tests) const;
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 
 private:
   /// Calls work(face) for each triangle that intersects `face`, without itself and `without`, until
-  /// it returns false.
+  /// it returns false. Counts those that are not evidently apart.
   template <typename Work>
-  void forEachIntersecting(const Face& face, Index without, const Work& work) const {
+  void forEachIntersecting(const Face& face, Index without, std::size_t& exact_tests,
+                           const Work& work) const {
     const Plane plane(face);
+    const auto meets = [&](const Face& other) {
+      if (other.triangle == face.triangle || other.triangle == without ||
+          evidentlyApartByBoth(face, plane, other))
+        return false;
+      ++exact_tests;
+      return intersectExactly(face, other);
+    };
     bool is_done = false;
     boxes_.forEachOverlapping(
         boxOf(face.corners).cast<float>(), 0, [&](const FloatBox&) { return is_done; },
         [&](Index place) {
           const Face& other = faces_[place];
-          is_done = is_done || (other.triangle != face.triangle && other.triangle != without &&
-                                intersect(face, plane, other) && !work(other));
+          is_done = is_done || (meets(other) && !work(other));
         });
   }
 

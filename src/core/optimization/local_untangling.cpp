@@ -88,9 +88,9 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
   const Face cad = face(t, {c, a, d});
   const Face cdb = face(o, {c, d, b});
   int left = before + most;
-  left -= local_.count(cad, o, left);
+  left -= local_.count(cad, o, left, exact_tests_);
   if (left >= 0)
-    left -= local_.count(cdb, t, left);
+    left -= local_.count(cdb, t, left, exact_tests_);
   if (left >= 0)
     left -= intersect(cad, cdb) ? 1 : 0;
   if (left < 0)
@@ -144,9 +144,19 @@ LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
     consider(t, k, {}, best);
   if (!best.flips.empty())
     return best;
-  // It takes as long as to take out and put back 8 vertices. With 1, subsampled and cut clouds take
-  // more than twice as long.
-  work_ += 8;
+  // It takes as long as to take out and put back 8 vertices, with some 100 exact tests. With 1,
+  // subsampled and cut clouds take more than twice as long. Where most triangles are degenerate,
+  // there are thousands of tests, and longer ones: 79 points then took 50 s.
+  constexpr std::size_t min_work = 8;
+  constexpr std::size_t tests_of_work = 32;
+  const std::size_t tests_before = exact_tests_;
+  best = bestTwoFlips(t);
+  work_ += std::max(min_work, (exact_tests_ - tests_before) / tests_of_work);
+  return best;
+}
+
+LocalUntangling::Repairs LocalUntangling::bestTwoFlips(Index t) {
+  Repairs best;
   for (const auto& [u, k] : sidesNear(t)) {
     const auto first = repairOf(u, k, 1);
     if (!first)

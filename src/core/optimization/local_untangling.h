@@ -64,6 +64,7 @@ private:
   void consider(Index t, int corner, const Repairs& before, Repairs& best);
   /// The best one or two flips of an intersecting triangle; no flips if none helps.
   Repairs bestRepairs(Index t);
+  Repairs bestTwoFlips(Index t);
   std::vector<std::pair<Index, int>> sidesNear(Index t) const;
   /// Number of others that intersect a watched triangle.
   int countOf(Index t);
@@ -77,6 +78,7 @@ private:
   EnergyMesh& mesh_;
   double scale_;  ///< brings the coordinates to at most 1
   std::size_t work_ = 0;
+  std::size_t exact_tests_ = 0;  ///< for flips, of triangles that are not evidently apart
   std::size_t max_work_ = std::numeric_limits<std::size_t>::max();
   LocalIntersections local_;               ///< the watched triangles
   std::unordered_map<Index, int> counts_;  ///< from countOf(), since the last change

@@ -135,10 +135,14 @@ inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
   }
 }
 
+/// The same, by the planes of both.
+inline bool evidentlyApartByBoth(const Face& a, const Plane& plane_a, const Face& b) {
+  return evidentlyApart(a, plane_a, b) || evidentlyApart(b, Plane(b), a);
+}
+
 /// Whether two triangles intersect.
 inline bool intersect(const Face& a, const Plane& plane_a, const Face& b) {
-  return !evidentlyApart(a, plane_a, b) && !evidentlyApart(b, Plane(b), a) &&
-         intersectExactly(a, b);
+  return !evidentlyApartByBoth(a, plane_a, b) && intersectExactly(a, b);
 }
 
 inline bool intersect(const Face& a, const Face& b) {
