@@ -209,10 +209,10 @@ inline NeighborSearch bruteForceSearch(const Positions& points) {
   return bruteForceFactory(points)(range(0, points.cols()));
 }
 
-/// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold surface in
-/// one piece over exactly the vertices [0, n): every directed edge once and its reverse once, the
-/// link of every vertex one cycle, V - E + F = 2 - 2 genus with one piece.
-inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus) {
+/// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold surface
+/// over exactly the vertices [0, n): every directed edge once and its reverse once, the link of
+/// every vertex one cycle, V - E + F = 2 pieces - 2 genus.
+inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus, Index pieces = 1) {
   std::map<std::pair<Index, Index>, Index> third;  // of the triangle left of a directed edge
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -238,18 +238,24 @@ inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus) {
     if (steps != degree)
       return false;
   }
-  std::set<Index> piece{0};
-  std::vector<Index> todo{0};
-  while (!todo.empty()) {
-    const Index v = todo.back();
-    todo.pop_back();
-    for (auto at = third.lower_bound({v, 0}); at != third.end() && at->first.first == v; ++at)
-      if (piece.insert(at->first.second).second)
-        todo.push_back(at->first.second);
+  std::set<Index> seen;
+  Index found_pieces = 0;
+  for (Index first = 0; first < n; ++first) {
+    if (!seen.insert(first).second)
+      continue;
+    ++found_pieces;
+    std::vector<Index> todo{first};
+    while (!todo.empty()) {
+      const Index v = todo.back();
+      todo.pop_back();
+      for (auto at = third.lower_bound({v, 0}); at != third.end() && at->first.first == v; ++at)
+        if (seen.insert(at->first.second).second)
+          todo.push_back(at->first.second);
+    }
   }
-  return static_cast<Index>(piece.size()) == n &&
+  return found_pieces == pieces &&
          n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) ==
-             2 - 2 * genus;
+             2 * pieces - 2 * genus;
 }
 
 inline bool isSphereOverAll(const Triangles& triangles, Index n) {

@@ -60,17 +60,18 @@ inline Positions finiteOf(const Positions& points) {
   return test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.allFinite(); });
 }
 
-/// Whether reconstruct() may mesh points; it must reject all others.
-inline bool canBeMeshed(const Positions& points) {
+/// Whether reconstruct() may mesh points; it must reject all others. Open surfaces may be flat.
+inline bool canBeMeshed(const Positions& points, const Options& options) {
   const Positions finite = finiteOf(points);
   return (finite.array().abs() <= 1e100).all() && firstAtPlaces(finite).size() >= 4 &&
-         !liesInPlane(finite);
+         (options.surface != SurfaceMode::Closed || !liesInPlane(finite));
 }
 
-/// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh.
+/// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh, and
+/// open surfaces may be left out where they intersect themselves.
 inline bool mustBeMeshed(const Positions& points, const Options& options) {
   return options.outliers == OutlierMode::None && options.parts == PartsMode::All &&
-         canBeMeshed(points);
+         options.surface == SurfaceMode::Closed && canBeMeshed(points, options);
 }
 
 /// Whether lists are as types.h says: `count` lists of indices in [0, n).
@@ -102,6 +103,43 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
   return volume < -1e-12L * size;
 }
 
+/// What a mesh lacks of the boundary, the pieces and the genus that are reported; empty if nothing.
+inline std::string faultOfTopology(const Surface& result) {
+  const auto n = static_cast<Index>(result.vertexCount());
+  // With a cone over each boundary loop it is closed.
+  std::map<Index, Index> next = test::boundaryOf(result.triangles);
+  std::vector<std::array<Index, 3>> cones;
+  Index loops = 0;
+  for (; !next.empty(); ++loops) {
+    const Index first = next.begin()->first;
+    Index v = first;
+    do {
+      const auto step = next.find(v);
+      if (step == next.end() || step->second < 0)
+        return "the boundary is not of loops that are apart";
+      cones.push_back({step->second, v, n + loops});
+      v = step->second;
+      next.erase(step);
+    } while (v != first);
+  }
+  Triangles closed(3, result.triangles.cols() + static_cast<Eigen::Index>(cones.size()));
+  closed.leftCols(result.triangles.cols()) = result.triangles;
+  for (std::size_t i = 0; i < cones.size(); ++i)
+    closed.col(result.triangles.cols() + static_cast<Eigen::Index>(i)) << cones[i][0], cones[i][1],
+        cones[i][2];
+  const auto pieces = static_cast<Index>(result.topology.components);
+  if (static_cast<std::size_t>(loops) != result.boundary.size() || !result.topology.genus ||
+      !test::isSurfaceOverAll(closed, n + loops, static_cast<Index>(*result.topology.genus),
+                              pieces))
+    return "the mesh is not a manifold with the boundary, the pieces and the genus that are "
+           "reported";
+  const auto genus = static_cast<long long>(result.genus());
+  if (result.topology.closed != result.isClosed() ||
+      (!result.has_certain_triangles_only && result.topology.genus != genus))
+    return "the result's own checks do not agree";
+  return "";
+}
+
 /// What a surface of some points of a cloud lacks of what is guaranteed; empty if it lacks nothing.
 inline std::string faultOf(const Positions& cloud, const Options& options, const Surface& result) {
   const Positions points = cloud(Eigen::all, result.inputs);
@@ -120,17 +158,20 @@ inline std::string faultOf(const Positions& cloud, const Options& options, const
       return "the vertex of a point is not that of the first point at its place";
   }
   const auto count = static_cast<Eigen::Index>(v);
+  const std::string fault = faultOfTopology(result);
+  if (!fault.empty())
+    return fault;
   const auto genus = static_cast<Index>(result.genus());
-  if (!test::isSurfaceOverAll(result.triangles, static_cast<Index>(v), genus))
-    return "the mesh is not a surface with its handles over all points";
-  if (!result.topology.isSurface() || !result.topology.closed || result.topology.genus != genus)
-    return "the result's own check says that the mesh is not such a surface";
+  const bool is_sphere =
+      options.surface == SurfaceMode::Closed && options.intersections == IntersectionMode::Keep;
+  if (is_sphere && !result.isClosed())
+    return "the mesh is open, and was to be closed";
   if (genus > 0 && options.handles == HandleMode::None)
     return "the mesh has handles that were to be cut";
-  if (facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
+  if (result.isClosed() && facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
     return "the triangles face inward";
   const bool has_sphere = result.sphere.cols() > 0;
-  const bool is_one = options.handles == HandleMode::None;
+  const bool is_one = is_sphere && options.handles == HandleMode::None;
   if ((has_sphere ? genus > 0 || result.sphere.cols() != count : genus == 0 && is_one) ||
       !areUnitVectors(result.sphere))
     return "the embedding is not of unit vectors, or not of a sphere";

@@ -181,6 +181,38 @@ Points tooFew(Random& random) {
   return pointsBy(count, [&] { return random.one(distinct); });
 }
 
+/// A curve in space: around each point the surface is a guess.
+Points spaceCurve(Random& random) {
+  const int kind = random.integer(0, 4);
+  const int m = random.integer(1, 5);
+  const int n = random.integer(2, 7);
+  const double radius = random.real(0.05, 0.8);
+  const auto at = [&](double t) -> Vector3d {
+    const double angle = 2 * kPi * m * t;
+    const double other = 2 * kPi * n * t;
+    switch (kind) {
+    case 0:  // through powers
+      return {2 * t - 1, std::pow(2 * t - 1, n), std::pow(2 * t - 1, n + 1)};
+    case 1:  // a helix, or a spiral on a cone
+      return {(1 - radius * t) * std::cos(angle), (1 - radius * t) * std::sin(angle), n * t};
+    case 2:  // a knot on a torus
+      return test::onCircle(angle, 1 + radius * std::cos(other), radius * std::sin(other));
+    case 3:  // a figure of Lissajous
+      return {std::sin(angle + radius), std::sin(other), std::sin(angle + other)};
+    default:  // with corners
+      return {std::floor(n * t), n * t - std::floor(n * t), radius * std::floor(n * t) * t};
+    }
+  };
+  const int count = random.chance(0.8) ? random.integer(20, 80) : random.integer(80, 250);
+  const bool is_even = random.chance(0.6);
+  const double noise = random.chance(0.6) ? 0.0 : scale(random, -5, -2);
+  int i = 0;
+  return pointsBy(count, [&]() -> Vector3d {
+    const double t = is_even ? static_cast<double>(i++) / count : random.share();
+    return at(t) + noise * random.inCube();
+  });
+}
+
 struct Family {
   const char* name;
   std::function<Points(Random&)> make;
@@ -201,6 +233,7 @@ const std::vector<Family>& families() {
       {"flat", flat},
       {"two far blobs", twoBlobs},
       {"limb", limb},
+      {"space curve", spaceCurve},
       {"random in a cube", [](Random& random) { return inCube(random, sizeOfSolid(random)); }},
       {"fewer than 4 distinct", tooFew},
   };
@@ -262,10 +295,12 @@ void treat(Random& random, Points& points) {
 Options someOptions(Random& random, bool is_large) {
   const auto one = [&random](int count) { return random.integer(0, count - 1); };
   Options options;
-  options.topology = TopologyMode::Sphere;
+  options.topology = static_cast<TopologyMode>(one(2));
   options.threads = 1;
   if (one(2) == 0)
     return withTopology(options);
+  if (options.topology == TopologyMode::Scan)
+    options.surface = static_cast<SurfaceMode>(one(4));
   options.method = one(3) == 0 ? Method::Paper : Method::Default;
   options.paper.weights = static_cast<EdgeWeights>(one(3));
   options.paper.k = 3 + one(30);
@@ -300,8 +335,9 @@ Answer answerTo(const NastySet& set, int threads, const NeighborSearchFactory& s
   try {
     answer.result = reconstruct(set.points, options, search_of);
     answer.bytes = bytesOf(answer.result);
-    answer.fault = canBeMeshed(set.points) ? faultOfLists(set.points, options, answer.result)
-                                           : "points that cannot be meshed are accepted";
+    answer.fault = canBeMeshed(set.points, options)
+                       ? faultOfLists(set.points, options, answer.result)
+                       : "points that cannot be meshed are accepted";
     for (const Surface& surface : answer.result.surfaces)
       if (answer.fault.empty())
         answer.fault = faultOf(set.points, options, surface);

@@ -58,7 +58,7 @@ private:
 struct NastySet {
   std::string family;
   Positions points;  ///< 3 x n, not always finite, not always in space
-  Options options;   ///< the defaults for half of the sets; one thread
+  Options options;   ///< of both topologies; their defaults for half of the sets; one thread
 };
 
 /// Some options of the method, the points and the parts that are meshed.

@@ -1,4 +1,5 @@
-// Meshes many nasty sets of points, in many ways. Exact arithmetic checks each answer.
+// Meshes many nasty sets of points, in many ways. Exact arithmetic checks each answer, which must
+// come within a minute.
 //
 //   stress_shapes [--quick] [--seed N]
 
@@ -7,6 +8,7 @@
 #include "stress.h"
 
 #include <atomic>
+#include <future>
 
 namespace {
 
@@ -55,7 +57,14 @@ int main(int argc, char** argv) {
   const auto work = [&](std::size_t) {
     for (std::size_t i = next++; i < sets; i = next++) {
       const stress::NastySet set = stress::makeNastySet(arguments.seed + i);
-      const std::string fault = tryOut(set, arguments.seed + i);
+      std::future<std::string> answer =
+          std::async(std::launch::async, [&] { return tryOut(set, arguments.seed + i); });
+      if (answer.wait_for(std::chrono::seconds(60)) == std::future_status::timeout) {
+        std::printf("seed %llu (%s): no end within 60 s\n", arguments.seed + i, set.family.c_str());
+        std::fflush(stdout);
+        std::_Exit(1);  // the work cannot be ended
+      }
+      const std::string fault = answer.get();
       if (fault.empty())
         continue;
       ++found;
