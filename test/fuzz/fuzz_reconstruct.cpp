@@ -11,7 +11,6 @@ using fuzz::require;
 
 Options optionsFrom(Bytes& bytes) {
   Options options;
-  options.topology = TopologyMode::Sphere;
   EmbeddingOptions& embedding = options.embedding;
   PaperOptions& paper = options.paper;
   options.method = bytes.choice<Method>(2);
@@ -44,6 +43,7 @@ Options optionsFrom(Bytes& bytes) {
     options.parts = bytes.choice<PartsMode>(4);
     options.min_points = bytes.integerOr(8);
   }
+  options.topology = which / 16 % 2 != 0 ? TopologyMode::Scan : TopologyMode::Sphere;
   return withTopology(options);
 }
 
@@ -124,9 +124,9 @@ void checkSurface(const Positions& points, const Options& options, const Surface
     if (!fault.empty())
       fuzz::finding(fault);
   } else {
-    require(result.topology.closed && result.topology.isSurface() &&
-                result.topology.genus == static_cast<long long>(result.genus()),
-            "the mesh of consolidated points is closed, with the handles that are listed");
+    const std::string fault = stress::faultOfTopology(result);
+    if (!fault.empty())
+      fuzz::finding(fault);
     require(result.consolidated.allFinite() &&
                 result.consolidated.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the consolidated points are as many finite ones as there are vertices");
@@ -208,7 +208,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (ending == Ending::InvalidInput && is_right && stress::mustBeMeshed(points, options))
     fuzz::finding("valid input is rejected: " + message);
   if (ending == Ending::Answer) {
-    require(is_right && stress::canBeMeshed(points),
+    require(is_right && stress::canBeMeshed(points, options),
             "points, answers and options that are not valid are rejected");
     checkResult(points, options, result);
   }
