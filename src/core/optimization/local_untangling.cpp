@@ -144,14 +144,16 @@ LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
     consider(t, k, {}, best);
   if (!best.flips.empty())
     return best;
-  // It takes as long as to take out and put back 8 vertices, with some 100 exact tests. With 1,
-  // subsampled and cut clouds take more than twice as long. Where most triangles are degenerate,
-  // there are thousands of tests, and longer ones: 79 points then took 50 s.
-  constexpr std::size_t min_work = 8;
-  constexpr std::size_t tests_of_work = 32;
+  // It takes as long as to take out and put back 8 vertices. With 1, subsampled and cut clouds take
+  // more than twice as long.
+  work_ += 8;
+  // Usual are 100 to 200 exact tests, at most 1,900. More are of degenerate triangles, where one
+  // test takes as long as half a vertex: 79 points of two places took 50 s.
+  constexpr std::size_t usual_tests = 2000;
   const std::size_t tests_before = exact_tests_;
   best = bestTwoFlips(t);
-  work_ += std::max(min_work, (exact_tests_ - tests_before) / tests_of_work);
+  const std::size_t tests = exact_tests_ - tests_before;
+  work_ += tests > usual_tests ? (tests - usual_tests) / 2 : 0;
   return best;
 }
 
