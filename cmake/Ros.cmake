@@ -12,8 +12,10 @@ set(ros1_packages message_generation diagnostic_updater dynamic_reconfigure geom
 set(ros2_packages diagnostic_msgs diagnostic_updater geometry_msgs pcl_conversions pcl_msgs rclcpp
                   rcl_interfaces sensor_msgs shape_msgs std_msgs visualization_msgs)
 
-# The packages among those that follow that are not there. What they set is lost with the function.
+# The packages among those that follow that are not there. What they set is lost with the function, and their
+# definitions as well: what is not of ROS is compiled as without it.
 function(spherical_param_missing_packages result)
+  get_directory_property(definitions COMPILE_DEFINITIONS)
   set(missing "")
   foreach(package IN LISTS ARGN)
     find_package(${package} QUIET)
@@ -21,6 +23,7 @@ function(spherical_param_missing_packages result)
       list(APPEND missing ${package})
     endif()
   endforeach()
+  set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "${definitions}")
   set(${result} "${missing}" PARENT_SCOPE)
 endfunction()
 
