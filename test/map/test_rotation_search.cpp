@@ -42,8 +42,8 @@ TEST(RotationSearch, ErrorIsTheMeanSquaredDistanceAtArea1) {
 }
 
 TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
-  const SphereSurface first = test::firstBlob().over(test::spiralSphere(1500)).surface();
-  const SphereSurface second = test::secondBlob().over(test::spiralSphere(1300)).surface();
+  const SphereSurface first = test::firstBlob().over(test::spiralSphere(600)).surface();
+  const SphereSurface second = test::secondBlob().over(test::spiralSphere(500)).surface();
   const Matrix3d rotation = found(first, second);
   const Matrix3d back = found(second, first);
   EXPECT_LT((rotation * back - Matrix3d::Identity()).norm(), 1e-5);

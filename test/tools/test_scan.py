@@ -62,7 +62,7 @@ class Scan(ToolTest):
                 some = vertices[::97]
                 self.assertLess(np.linalg.norm(some - points[nearest(some, points)], axis=1).max(), 1.4 * spacing.mean())
                 self.check_truth(vertices, triangles, EULER.get(name, 2), name not in ("bowl", "holed"))
-                self.check_normals(points, normals, vertices, triangles)
+                self.check_normals(points[::4], normals[::4], vertices, triangles)
 
     def check_truth(self, vertices, triangles, euler, is_closed):
         self.assertAlmostEqual(np.ptp(vertices, axis=0).max(), 1, delta=0.2)
