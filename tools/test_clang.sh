@@ -1,12 +1,31 @@
 #!/usr/bin/env bash
-# The build by clang, with address and undefined behaviour sanitizers: clang-tidy, and the tests of the
-# core, the map, the PCL class, the seam to ROS and the readers. What tools do with files is tested by
-# tools/test.sh, and tools/stress.sh fuzzes.
+# The build by clang, with address and undefined behaviour sanitizers, and its tests. What tools do with files is tested
+# by tools/test.sh, and tools/stress.sh fuzzes.
+#
+#   tools/test_clang.sh            core, map, PCL class, the seam to ROS and the readers; clang-tidy, the thread
+#                                  sanitizer on the tests of concurrency, a build with libc++
+#   tools/test_clang.sh --quick    the quick tests of core and map
 set -euo pipefail
-
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case "${1:-}" in
+"") quick=no ;;
+--quick) quick=yes ;;
+*)
+  sed -n -e '2,7s/^# \{0,1\}//p' tools/test_clang.sh
+  exit 2
+  ;;
+esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
+
+# Large clouds, whole collections and repeated calls are for the release build: the same code runs on smaller ones in
+# other tests.
+release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
+release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
+release_only+=':Judgement.WhatIsNotUsable*:SelfIntersection.ASearchUpTo*'
+# Half of the time of the others.
+slow='Contract.*Report*:Reconstruct.NastySets*:Concurrency.*:Reconstruct.Mirrored*:Contract.SurfacesDoNotDepend*'
+slow+=':Selection.EverySurface*:Judgement.SurfacesThat*'
 
 # The sources of library and tools as the clang build compiles them: several together, so that the
 # headers of others are read once for all. So the analyzer must look into included files, too. It has
@@ -28,19 +47,51 @@ sanitized() {
     GTEST_SHARD_INDEX='{}' "$1" --gtest_brief=1 "--gtest_filter=$2"
 }
 
+build_libcxx() {
+  cmake -G Ninja -S . -B build/libcxx -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER=clang \
+    -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-stdlib=libc++ -DSPHERICAL_PARAM_WERROR=ON \
+    -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_PYTHON=OFF &&
+    cmake --build build/libcxx -j "$jobs"
+}
+
+# Another compiler and another standard library make the same mesh.
+same_mesh_with_libcxx() {
+  local build
+  build_release pcl_spherical_param_scan pcl_spherical_param_reconstruction || return 1
+  for build in release libcxx; do
+    "build/$build/bin/pcl_spherical_param_scan" hand "build/$build/scan.ply" -points 5000 &&
+      "build/$build/bin/pcl_spherical_param_reconstruction" "build/$build/scan.ply" "build/$build/mesh.ply" ||
+      return 1
+  done
+  cmp build/{release,libcxx}/scan.ply && cmp build/{release,libcxx}/mesh.ply
+}
+
 check "set-up" tools/setup.sh || finish
 use_compiler_cache
-programs=(test_core test_map test_contract test_pcl test_ros_seam test_cloud_reader test_faults)
-if check "clang: build" configure_and_build asan "${programs[@]}" spherical_param_tools; then
-  check "clang-tidy" tidy || true
-  # Large clouds, whole collections and repeated calls are for the release build: the same code runs on
-  # smaller ones in other tests.
-  release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
-  release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
-  release_only+=':Judgement.WhatIsNotUsable*:SelfIntersection.ASearchUpTo*'
+programs=(test_core test_map test_contract)
+targets=("${programs[@]}")
+left_out="$release_only:$slow"
+if [ "$quick" = no ]; then
+  programs+=(test_pcl test_ros_seam test_cloud_reader test_faults)
+  targets=("${programs[@]}" spherical_param_tools)
+  left_out="$release_only"
+fi
+if check "clang: build" configure_and_build asan "${targets[@]}"; then
+  [ "$quick" = yes ] || check "clang-tidy" tidy || true
   for program in "${programs[@]}"; do
-    check "ASan and UBSan: $program" sanitized "build/asan/bin/$program" "-$release_only" || true
+    check "ASan and UBSan: $program" sanitized "build/asan/bin/$program" "-$left_out" || true
   done
 fi
+[ "$quick" = no ] || finish
 
+programs=(test_contract test_reconstruction_worker)
+if check "TSan: build" configure_and_build tsan "${programs[@]}"; then
+  for program in "${programs[@]}"; do
+    check "TSan: $program" "build/tsan/bin/$program" --gtest_brief=1 '--gtest_filter=Concurrency*' || true
+  done
+fi
+need_packages clang
+if check "libc++: build" build_libcxx; then
+  check "libc++: the same mesh" same_mesh_with_libcxx || true
+fi
 finish

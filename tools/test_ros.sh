@@ -3,9 +3,19 @@
 # The nodes of ROS: catkin, colcon and plain cmake build the same package.xml; node, nodelet,
 # service and launch files of ROS 1 work with a real master; the examples of doc/guide.md are run as
 # printed. Installs what it needs. The last line counts tests.
+#
+#   tools/test_ros.sh            everything, built as doc/guide.md says
+#   tools/test_ros.sh --quick    ROS 1 with a real master, of the build of tools/test.sh
 set -euo pipefail
-
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case "${1:-}" in
+"") quick=no ;;
+--quick) quick=yes ;;
+*)
+  sed -n -e '3,8s/^# \{0,1\}//p' tools/test_ros.sh
+  exit 2
+  ;;
+esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 need_packages ros
@@ -26,6 +36,14 @@ installed_by_catkin="$home/ws/install_isolated"
 by_catkin() { # as the page says
   rm -rf "$home/ws/src" "$installed_by_catkin"
   HOME="$home" bash -eo pipefail -c "$(doc_block doc/guide.md 1)"
+}
+
+of_tests() { # the build of tools/test.sh, where the examples look for that of catkin
+  rm -rf "$installed_by_catkin"
+  # catkin's setup files go where the prefix was when it was configured.
+  configure_release ON -DSPHERICAL_PARAM_BUILD_ROS=ON -DCMAKE_INSTALL_PREFIX="$installed_by_catkin" &&
+    cmake --build build/release -j "$jobs" && cmake --install build/release >/dev/null &&
+    ln -sf /usr/lib/*/libpcl_ros_filters.so "$installed_by_catkin/lib/"
 }
 
 by_colcon() { # <version or ""> <folder>
@@ -161,6 +179,24 @@ built() {
   fi
 }
 
+ros1_tests() (
+  set +u
+  # shellcheck source=/dev/null
+  . "$installed_by_catkin/setup.bash"
+  export DEPTH_CAMERA RVIZ SCANNER
+  DEPTH_CAMERA="$(doc_block doc/guide.md 2)"
+  RVIZ="$(doc_block doc/guide.md 3)"
+  SCANNER="$(doc_block doc/guide.md 4)"
+  HOME="$home" exec test/ros/test_ros1.py
+)
+
+if [ "$quick" = yes ]; then
+  files=("${of_all[@]}" "${of_ros1[@]}")
+  built "ROS 1, of the tests" "$installed_by_catkin" of_tests
+  check "ROS 1: nodes with a real master" ros1_tests || true
+  finish
+fi
+
 check "package.xml: ROS 1 is built by catkin" build_type 1 catkin roscpp rclcpp || true
 check "package.xml: ROS 2 is built by ament" build_type 2 ament_cmake rclcpp roscpp || true
 check "package.xml: without ROS cmake builds" build_type "" cmake "" sensor_msgs || true
@@ -182,16 +218,6 @@ check "catkin_make: nodes in the one project of the workspace" nodes_in_workspac
 check "catkin: no nodes inside another package" no_nodes_inside_another || true
 check "ROS 2: launch files" test/ros/test_ros2_launch.py || true
 
-ros1_tests() (
-  set +u
-  # shellcheck source=/dev/null
-  . "$installed_by_catkin/setup.bash"
-  export DEPTH_CAMERA RVIZ SCANNER
-  DEPTH_CAMERA="$(doc_block doc/guide.md 2)"
-  RVIZ="$(doc_block doc/guide.md 3)"
-  SCANNER="$(doc_block doc/guide.md 4)"
-  HOME="$home" exec test/ros/test_ros1.py
-)
 check "ROS 1: nodes with a real master" ros1_tests || true
 
 finish

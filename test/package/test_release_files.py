@@ -35,10 +35,17 @@ class ReleaseFiles(unittest.TestCase):
         self.assertEqual([citation["version"], port["version"], package.findtext("version")], [version] * 3)
         self.assertEqual(citation["date-released"], found(rf"^## \[{re.escape(version)}\] - (\S+)$", "CHANGELOG.md"))
 
-    def test_the_workflow_runs_what_ci_run_does(self):
-        workflow = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text())
-        scripts = found(r"^scripts=\(([^)]*)\)", ".ci/run").split()
-        self.assertEqual(workflow["jobs"]["debian"]["strategy"]["matrix"]["script"], scripts)
+    def test_each_script_of_tests_is_run_by_a_workflow(self):
+        runs_all = found(r"run_scripts\.sh\"? ((?:.*\\\n)*.*)", "tools/test_all.sh")
+        run = set(re.findall(r"\w+", runs_all.replace("--quick", "")))
+        scripts = {path.stem for path in (ROOT / "tools").glob("test*.sh")} - {"test_all"} | {"stress"}
+        self.assertEqual(run, scripts)
+        for workflow, command in (("ci", ".ci/run"), ("weekly", "tools/test_all.sh")):
+            jobs = yaml.safe_load((ROOT / f".github/workflows/{workflow}.yml").read_text())["jobs"]
+            self.assertIn(command, [line for step in jobs["debian"]["steps"] for line in step.get("run", "").split("\n")])
+        release = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text())["jobs"]
+        self.assertIn("tests", release["release"]["needs"])
+        self.assertEqual(release["tests"]["uses"], "./.github/workflows/weekly.yml")
 
 
 if __name__ == "__main__":

@@ -11,11 +11,11 @@ passed=0
 failed=0
 skipped=0
 
-# What was compiled with the same settings in another folder of the tree is not compiled again.
+# What was compiled with the same settings in another folder is not compiled again.
 use_compiler_cache() {
   if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-    export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=yes
+    export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=yes
     export CCACHE_SLOPPINESS=pch_defines,time_macros # which precompiled headers need
   fi
 }
@@ -96,13 +96,14 @@ files() {
   fi | sort -u
 }
 
-# configure_release <ON or OFF>: with the flags of the packages, so that these are what is tested and
-# measured, and compiled once. ON leaves out the benchmarks' peers but PCL: they are not in the list of
-# packages, and take minutes.
+# configure_release <ON or OFF> <option>...: with the flags of the packages, so that these are what is
+# tested and measured, and compiled once. ON leaves out the benchmarks' peers but PCL: they are not in
+# the list of packages, and take minutes.
 configure_release() {
   cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
     -DBUILD_TESTING=ON -DSPHERICAL_PARAM_BUILD_TESTS=ON -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON \
-    -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$1" -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$1"
+    -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$1" -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$1" \
+    "${@:2}"
 }
 
 # build_release [target...]: what all scripts test.
