@@ -2,24 +2,19 @@
 # Stress tests: fuzzed files and calls, nasty sets of points, surfaces that are no spheres, threads.
 #
 #   tools/stress.sh            everything: hours
-#   tools/stress.sh --quick    minutes, which CI runs
+#   tools/stress.sh --quick    minutes, which tools/test_all.sh runs
 #
 # The last lines are a table of what was tried and found. Logs are in build/test-logs, inputs that
 # break a fuzzer in build/stress.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-case "${1:-}" in # seconds of each fuzzer; seed 0: another one each time
-"") quick=() seconds=600 seed=0 ;;
---quick) quick=(--quick) seconds=5 seed=1 ;;
-*)
-  sed -n -e '2,8s/^# \{0,1\}//p' tools/stress.sh
-  exit 2
-  ;;
-esac
-
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
+quick_option "$@"
+# Seconds of each fuzzer; seed 0: another one each time.
+options=() seconds=600 seed=0
+[ "$quick" = no ] || options=(--quick) seconds=5 seed=1
 
 work="$PWD/build/stress"
 rm -rf "$work"
@@ -57,11 +52,11 @@ if check "fuzzers: build" configure_and_build asan fuzzers; then
 fi
 if check "build" build_release stress_shapes stress_surfaces stress_threads; then
   for name in shapes surfaces threads; do
-    part "$name" "build/release/bin/stress_$name" "${quick[@]}" || true
+    part "$name" "build/release/bin/stress_$name" "${options[@]}" || true
   done
 fi
 if check "thread sanitizer: build" configure_and_build tsan stress_threads; then
-  part "thread sanitizer" build/tsan/bin/stress_threads "${quick[@]}" || true
+  part "thread sanitizer" build/tsan/bin/stress_threads "${options[@]}" || true
 fi
 
 echo '| part | inputs tried | found |'

@@ -7,16 +7,9 @@
 #   tools/test_clang.sh --quick    the quick tests of core and map
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-case "${1:-}" in
-"") quick=no ;;
---quick) quick=yes ;;
-*)
-  sed -n -e '2,7s/^# \{0,1\}//p' tools/test_clang.sh
-  exit 2
-  ;;
-esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
+quick_option "$@"
 
 # Large clouds, whole collections and repeated calls are for the release build: the same code runs on smaller ones in
 # other tests.

@@ -8,16 +8,9 @@
 #   tools/test_ros.sh --quick    ROS 1 with a real master, of the build of tools/test.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-case "${1:-}" in
-"") quick=no ;;
---quick) quick=yes ;;
-*)
-  sed -n -e '3,8s/^# \{0,1\}//p' tools/test_ros.sh
-  exit 2
-  ;;
-esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
+quick_option "$@"
 need_packages ros
 
 # Debian's ROS is made of its own Python's modules.

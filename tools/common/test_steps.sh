@@ -27,6 +27,20 @@ export Python3_ROOT=/usr
 # Programs with sanitizers say where.
 export UBSAN_OPTIONS=print_stacktrace=1
 
+# quick_option <argument>...: sets `quick` to yes or no. Other arguments end the script with the comment at
+# its top.
+quick_option() {
+  quick=no
+  case "$*" in
+  "") ;;
+  --quick) quick=yes ;;
+  *)
+    awk 'NR > 1 && !/^# shellcheck/ { if (!sub(/^# ?/, "")) exit; print }' "tools/${0##*/}"
+    exit 2
+    ;;
+  esac
+}
+
 report() { # <result> <seconds> <step>
   printf '%-6s %5ss  %s\n' "$1" "$2" "$3"
 }
