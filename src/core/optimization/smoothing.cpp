@@ -132,13 +132,19 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 }
 
 /// Moves all points by one distance along their normals so that the volume becomes the given one:
-/// Newton's method, as long as it halves the error.
+/// Newton's method. A step that leads farther away is halved: after much shrinking a whole one is far
+/// too long.
 void Filter::restoreVolume(Positions& points, double volume) const {
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
-  while (std::abs(error) > 1e-12 * std::abs(volume)) {
+  constexpr int max_steps = 50;
+  constexpr double min_fraction = 1e-3;
+  double fraction = 1.0;
+  for (int step = 0;
+       step < max_steps && fraction > min_fraction && std::abs(error) > 1e-12 * std::abs(volume);
+       ++step) {
     const double slope = sum([&](Index v) { return normal(points, v).norm(); }) / 6.0;
-    const double distance = error / slope;
+    const double distance = fraction * error / slope;
     if (!std::isfinite(distance))
       return;
     forEachPoint([&](Index v) {
@@ -149,12 +155,13 @@ void Filter::restoreVolume(Positions& points, double volume) const {
         moved.col(v) += distance / length * direction;
     });
     const double new_error = volume - this->volume(moved);
-    if (!(std::abs(new_error) < std::abs(error)))
-      return;
+    if (!(std::abs(new_error) < std::abs(error))) {
+      fraction /= 2.0;
+      continue;
+    }
     points.swap(moved);
-    if (std::abs(new_error) > 0.5 * std::abs(error))
-      return;
     error = new_error;
+    fraction = 1.0;
   }
 }
 
