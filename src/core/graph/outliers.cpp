@@ -165,7 +165,10 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
   DeviatingPoints result;
   Scoring scoring(points, lists, threads);
   Indexed<char> is_outlier(lists.size(), 0);
-  for (std::size_t left = lists.size(), before = 0; left != before && left > kMinNeighbors;) {
+  // Until a round marks less than 1 % of all that are marked.
+  std::size_t marked = 0;
+  for (std::size_t gained = 1; 100 * gained > marked && lists.size() - marked > kMinNeighbors;
+       marked += gained) {
     reportFraction(report, 0.0);
     scoring.compute(is_outlier);
     const auto mean_over_rest = [&](const auto& value) {
@@ -173,17 +176,17 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
         if (is_outlier[i] == 0)
           total += value(std::min(scoring.scores[i], 1.0));
       });
-      return sum / static_cast<double>(left);
+      return sum / static_cast<double>(lists.size() - marked);
     };
     const double mean = mean_over_rest([](double score) { return score; });
     const double deviation =
         std::sqrt(mean_over_rest([&](double score) { return (score - mean) * (score - mean); }));
     result.threshold = std::max(mean + sigma * deviation, 1.0);
-    before = left;
+    gained = 0;
     for (const Index i : indicesOf(is_outlier))
       if (is_outlier[i] == 0 && scoring.scores[i] > result.threshold) {
         is_outlier[i] = 1;
-        --left;
+        ++gained;
       }
   }
   reportFraction(report, 1.0);

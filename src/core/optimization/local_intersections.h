@@ -30,8 +30,7 @@ public:
   /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
   /// beyond `most`.
   int count(const Face& face, Index without, int most = std::numeric_limits<int>::max() - 1) const;
-  /// The same. \param exact_tests receives the number of triangles that are not evidently apart
-  /// more.
+  /// The same. \param exact_tests grows by the number of triangles that are not evidently apart.
   int count(const Face& face, Index without, int most, std::size_t& exact_tests) const;
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 

@@ -229,7 +229,8 @@ IntersectingPairs untangle(Workbench& bench, IntersectingPairs found, int rounds
       break;
   // Rounds in a row without a gain. Small parts gain more in the same time: large ones once nothing
   // else helps.
-  for (int idle = 0; idle < tuned::kMaxIdleRounds && is_due();) {
+  for (int round = 0, idle = 0;
+       round < tuned::kMaxRoundsByNumber && idle < tuned::kMaxIdleRounds && is_due(); ++round) {
     if (idle == 0)
       flipApart(bench, found);
     if (!is_due())

@@ -89,6 +89,9 @@ constexpr int kMaxRoundsByEnergy = 2;
 /// Rounds by number in a row without a gain. With 20, and 80 rounds in all, as many of the runs end
 /// without intersections, in 1.05 times as long.
 constexpr int kMaxIdleRounds = 12;
+/// Rounds by number in all: each searches the whole mesh for intersections. Noisy and coarse clouds
+/// take up to 30.
+constexpr int kMaxRoundsByNumber = 100;
 /// Vertices of a part around two triangles that intersect: this number, doubled up to 16 times as
 /// many. Rounds by number begin with parts up to four times as many; each round without a gain
 /// doubles that. Of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20 times as long. Rounds

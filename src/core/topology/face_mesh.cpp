@@ -109,12 +109,14 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
   return triangles;
 }
 
-/// The triangles around a vertex that follow each other, in fans; some of the lists are empty.
+/// The triangles around a vertex that follow each other, but those that are dropped, in fans; some
+/// of the lists are empty.
 Indexed<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
-                                   Index v) {
+                                   const Indexed<char>& is_dropped, Index v) {
   Indexed<std::array<Index, 3>> wedges;  // first neighbour, last one, triangle
   corners.forEachCorner(v, [&](Index t, Index k) {
-    wedges.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
+    if (is_dropped[t] == 0)
+      wedges.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
   });
   UnionFind sets(wedges.size());
   for (const Index i : indicesOf(wedges))
@@ -138,20 +140,25 @@ Triangles filtered(const Triangles& triangles, const Condition& stays) {
 }
 
 /// Leaves the largest fan of each vertex.
-Triangles withoutPinches(Triangles triangles, std::size_t vertices) {
-  for (;;) {
-    const CornerTable corners(triangles, vertices, 1);
-    Indexed<char> drops(columnCount(triangles), 0);
-    for (Index v = 0; v < static_cast<Index>(vertices); ++v)
-      if (corners.countAt(v) > 0)
-        for (const std::vector<Index>& fan : withoutLargest(fansAt(triangles, corners, v)))
-          for (const Index t : fan)
-            drops[t] = 1;
-    Triangles rest = filtered(triangles, [&](Eigen::Index t) { return drops[t] == 0; });
-    if (rest.cols() == triangles.cols())
-      return rest;
-    triangles = std::move(rest);
+Triangles withoutPinches(const Triangles& triangles, std::size_t vertices) {
+  const CornerTable corners(triangles, vertices, 1);
+  Indexed<char> is_dropped(columnCount(triangles), 0);
+  for (Indexed<Index> due = firstIndices(vertices); !due.empty();) {
+    std::vector<Index> dropped;
+    for (const Index v : due) {
+      const auto fans = fansAt(triangles, corners, is_dropped, v);
+      if (fans.size() > 1)
+        for (const std::vector<Index>& fan : withoutLargest(fans))
+          dropped.insert(dropped.end(), fan.begin(), fan.end());
+    }
+    due.clear();
+    for (const Index t : dropped) {
+      is_dropped[t] = 1;
+      due.insert(due.end(), {triangles(0, t), triangles(1, t), triangles(2, t)});
+    }
+    sortUnique(due);
   }
+  return filtered(triangles, [&](Eigen::Index t) { return is_dropped[t] == 0; });
 }
 
 /// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
@@ -369,9 +376,8 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
   Triangles faces = matrixOf(found);
   FaceMesh mesh;
   for (long long last = std::numeric_limits<long long>::max();;) {
-    mesh.triangles =
-        joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
-    // A triangle whose own boundary loop is filled is no sphere of at least 4 vertices.
+    mesh.triangles = joined(points, graph, closed(points, withoutPinches(faces, graph.size())));
+    // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
     if (mesh.triangles.cols() < 4)
       return std::nullopt;
     const long long found_genus = *checkTopology(mesh.triangles, graph.size()).genus;
