@@ -222,7 +222,7 @@ struct Watch {
 
 // More points than are left to a single thread, also on coarser levels.
 TEST(Contract, ThreadsAndReportsChangeNoBit) {
-  const Inputs inputs(10000);
+  const Inputs inputs(20000);
   for (const auto& [name, run, last_fraction] : allFunctions()) {
     SCOPED_TRACE(name);
     const Numbers alone = run(inputs, Execution{1});

@@ -2,7 +2,7 @@
 """Checks that every block of commands or code in README.md and doc is run by a test as printed.
 
 Before each there is a comment: "test", see run_examples.py, or "run by SCRIPT", which has a call
-"doc_block PAGE N" for the N-th of its blocks, or is .ci/run and has the script in its list.
+"doc_block PAGE N" for the N-th of its blocks, or is .ci/run and calls the script by run_scripts.sh.
 """
 
 import collections
@@ -26,7 +26,7 @@ class Commands(unittest.TestCase):
                     self.assertIsNotNone(block["mark"], "no comment says what runs it")
                     if block["script"] == ".ci/run":
                         tool = re.match(r"tools/(\w+)\.sh", block["text"])
-                        self.assertRegex((ROOT / ".ci/run").read_text(), rf"run_scripts\.sh.* {tool[1]}\b")
+                        self.assertRegex((ROOT / ".ci/run").read_text(), rf"run_scripts\.sh.*[ \"]{tool[1]}\b")
                     elif block["script"]:
                         self.assertRegex((ROOT / block["script"]).read_text(), rf'doc_block "?\S*{name}"? {numbers[block["script"]]}\b')
 

@@ -60,18 +60,23 @@ inline Positions finiteOf(const Positions& points) {
   return test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.allFinite(); });
 }
 
+/// Whether meshes may have openings.
+inline bool mayBeOpen(const Options& options) {
+  return options.surface != SurfaceMode::Closed && options.method == Method::Default;
+}
+
 /// Whether reconstruct() may mesh points; it must reject all others. Open surfaces may be flat.
 inline bool canBeMeshed(const Positions& points, const Options& options) {
   const Positions finite = finiteOf(points);
   return (finite.array().abs() <= 1e100).all() && firstAtPlaces(finite).size() >= 4 &&
-         (options.surface != SurfaceMode::Closed || !liesInPlane(finite));
+         (mayBeOpen(options) || !liesInPlane(finite));
 }
 
 /// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh, and
 /// open surfaces may be left out where they intersect themselves.
 inline bool mustBeMeshed(const Positions& points, const Options& options) {
   return options.outliers == OutlierMode::None && options.parts == PartsMode::All &&
-         options.surface == SurfaceMode::Closed && canBeMeshed(points, options);
+         !mayBeOpen(options) && canBeMeshed(points, options);
 }
 
 /// Whether lists are as types.h says: `count` lists of indices in [0, n).
@@ -162,8 +167,7 @@ inline std::string faultOf(const Positions& cloud, const Options& options, const
   if (!fault.empty())
     return fault;
   const auto genus = static_cast<Index>(result.genus());
-  const bool is_sphere =
-      options.surface == SurfaceMode::Closed && options.intersections == IntersectionMode::Keep;
+  const bool is_sphere = !mayBeOpen(options) && options.intersections == IntersectionMode::Keep;
   if (is_sphere && !result.isClosed())
     return "the mesh is open, and was to be closed";
   if (genus > 0 && options.handles == HandleMode::None)

@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
           std::async(std::launch::async, [&] { return tryOut(set, arguments.seed + i); });
       if (answer.wait_for(std::chrono::seconds(60)) == std::future_status::timeout) {
         std::printf("seed %llu (%s): no end within 60 s\n", arguments.seed + i, set.family.c_str());
+        stress::finish("nasty sets of points", i, found + 1);
         std::fflush(stdout);
         std::_Exit(1);  // the work cannot be ended
       }
