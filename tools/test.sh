@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
+[ $# -eq 0 ] || usage
 
 formatted() {
   files '*.h' '*.hpp' '*.cpp' | xargs -r clang-format --dry-run --Werror

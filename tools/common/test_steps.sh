@@ -15,6 +15,8 @@ skipped=0
 use_compiler_cache() {
   if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    # Its usual folder, also where HOME is another.
+    export CCACHE_DIR="${CCACHE_DIR:-$(ccache --get-config cache_dir)}"
     export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=yes
     export CCACHE_SLOPPINESS=pch_defines,time_macros # which precompiled headers need
   fi
@@ -27,17 +29,19 @@ export Python3_ROOT=/usr
 # Programs with sanitizers say where.
 export UBSAN_OPTIONS=print_stacktrace=1
 
-# quick_option <argument>...: sets `quick` to yes or no. Other arguments end the script with the comment at
-# its top.
+# usage: ends the script with the comment at its top.
+usage() {
+  awk 'NR > 1 && !/^# shellcheck/ { if (!sub(/^# ?/, "")) exit; print }' "tools/${0##*/}"
+  exit 2
+}
+
+# quick_option <argument>...: sets `quick` to yes or no.
 quick_option() {
-  quick=no
   case "$*" in
-  "") ;;
+  "") quick=no ;;
+  # shellcheck disable=SC2034  # the script asks for it
   --quick) quick=yes ;;
-  *)
-    awk 'NR > 1 && !/^# shellcheck/ { if (!sub(/^# ?/, "")) exit; print }' "tools/${0##*/}"
-    exit 2
-    ;;
+  *) usage ;;
   esac
 }
 
@@ -112,12 +116,12 @@ files() {
 
 # configure_release <ON or OFF> <option>...: with the flags of the packages, so that these are what is
 # tested and measured, and compiled once. ON leaves out the benchmarks' peers but PCL: they are not in
-# the list of packages, and take minutes.
+# the list of packages, and take minutes. What tools/test_ros.sh sets is not kept.
 configure_release() {
   cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
     -DBUILD_TESTING=ON -DSPHERICAL_PARAM_BUILD_TESTS=ON -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON \
     -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$1" -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$1" \
-    "${@:2}"
+    -DSPHERICAL_PARAM_BUILD_ROS=OFF -DCMAKE_INSTALL_PREFIX=/usr/local "${@:2}"
 }
 
 # build_release [target...]: what all scripts test.
