@@ -132,8 +132,8 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 }
 
 /// Moves all points by one distance along their normals so that the volume becomes the given one:
-/// Newton's method. A step that leads farther away is halved: after much shrinking a whole one is far
-/// too long.
+/// Newton's method. A step that leads farther away is halved: after much shrinking a whole one is
+/// far too long.
 void Filter::restoreVolume(Positions& points, double volume) const {
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
