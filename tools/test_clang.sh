@@ -16,7 +16,7 @@ quick_option "$@"
 release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
 release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
 release_only+=':Judgement.WhatIsNotUsable*:SelfIntersection.ASearchUpTo*'
-# Half of the time of the others.
+# Eleven of the others, which take half of their time.
 slow='Contract.*Report*:Reconstruct.NastySets*:Concurrency.*:Reconstruct.Mirrored*:Contract.SurfacesDoNotDepend*'
 slow+=':Selection.EverySurface*:Judgement.SurfacesThat*'
 

@@ -64,6 +64,7 @@ private:
   void consider(Index t, int corner, const Repairs& before, Repairs& best);
   /// The best one or two flips of an intersecting triangle; no flips if none helps.
   Repairs bestRepairs(Index t);
+  /// The same, where no single flip helps: the best two, one after the other.
   Repairs bestTwoFlips(Index t);
   std::vector<std::pair<Index, int>> sidesNear(Index t) const;
   /// Number of others that intersect a watched triangle.
