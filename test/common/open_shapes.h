@@ -64,6 +64,25 @@ inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {
   return next;
 }
 
+/// The boundary loops of a mesh, as lists of vertices; nothing if they are not apart.
+inline std::optional<std::vector<std::vector<Index>>> loopsOf(const Triangles& triangles) {
+  std::map<Index, Index> next = boundaryOf(triangles);
+  std::vector<std::vector<Index>> loops;
+  while (!next.empty()) {
+    const Index first = next.begin()->first;
+    std::vector<Index>& loop = loops.emplace_back();
+    for (auto step = next.begin(); step != next.end(); step = next.find(loop.back())) {
+      if (step->second < 0)
+        return std::nullopt;
+      loop.push_back(step->second);
+      next.erase(step);
+    }
+    if (loop.back() != first)
+      return std::nullopt;
+  }
+  return loops;
+}
+
 /// A field of 18 x 18 points, of which 3 x 3 each are 0, 2.5 or 5 high, without walls.
 inline Positions terraces() {
   return gridOf(18, 18, [](int i, int j) {

@@ -111,21 +111,16 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
 /// What a mesh lacks of the boundary, the pieces and the genus that are reported; empty if nothing.
 inline std::string faultOfTopology(const Surface& result) {
   const auto n = static_cast<Index>(result.vertexCount());
+  const auto boundary = test::loopsOf(result.triangles);
+  if (!boundary)
+    return "the boundary is not of loops that are apart";
   // With a cone over each boundary loop it is closed.
-  std::map<Index, Index> next = test::boundaryOf(result.triangles);
-  std::vector<std::array<Index, 3>> cones;
   Index loops = 0;
-  for (; !next.empty(); ++loops) {
-    const Index first = next.begin()->first;
-    Index v = first;
-    do {
-      const auto step = next.find(v);
-      if (step == next.end() || step->second < 0)
-        return "the boundary is not of loops that are apart";
-      cones.push_back({step->second, v, n + loops});
-      v = step->second;
-      next.erase(step);
-    } while (v != first);
+  std::vector<std::array<Index, 3>> cones;
+  for (const std::vector<Index>& loop : *boundary) {
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      cones.push_back({loop[(i + 1) % loop.size()], loop[i], n + loops});
+    ++loops;
   }
   Triangles closed(3, result.triangles.cols() + static_cast<Eigen::Index>(cones.size()));
   closed.leftCols(result.triangles.cols()) = result.triangles;

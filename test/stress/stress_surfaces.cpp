@@ -37,16 +37,12 @@ Opening measured(const std::vector<Vector3d>& loop) {
 }
 
 std::vector<Opening> openingsOf(const TruthMesh& mesh) {
-  std::map<Index, Index> next = test::boundaryOf(mesh.triangles);
+  const auto boundaries = test::loopsOf(mesh.triangles);
   std::vector<Opening> openings;
-  while (!next.empty()) {
+  for (const std::vector<Index>& boundary : boundaries.value()) {
     std::vector<Vector3d> loop;
-    for (auto step = next.begin(); step != next.end();) {
-      const Index to = step->second;
-      next.erase(step);
-      loop.emplace_back(mesh.vertices.col(to));
-      step = next.find(to);
-    }
+    for (const Index v : boundary)
+      loop.emplace_back(mesh.vertices.col(v));
     openings.push_back(measured(loop));
   }
   return openings;
