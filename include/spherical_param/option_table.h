@@ -2,8 +2,11 @@
 
 #include "spherical_param/options.h"
 
+#include <Eigen/Core>
+
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -26,6 +29,7 @@ struct OptionRow {
   bool optional = false;             ///< may be unset
   std::vector<std::string> choices;  ///< names of values; empty for plain numbers
   bool is_number = false;            ///< takes numbers, perhaps besides choices
+  bool is_point = false;             ///< takes texts of toPoint() besides choices
   bool is_integer = false;           ///< of numbers
   double min = 0.0;                  ///< of numbers
   double max = 0.0;                  ///< of numbers
@@ -64,6 +68,12 @@ void setOption(Options& options, const std::string& name, const OptionValue& val
 /// \param row of the option.
 /// \return the words.
 std::string rangeOf(const OptionRow& row);
+
+/// The coordinates of a point.
+///
+/// \param text such as "1.5,0,-2".
+/// \return them; empty for another text, or numbers that are not finite.
+std::optional<Eigen::Vector3d> toPoint(const std::string& text);
 
 /// A value in words.
 ///

@@ -38,6 +38,18 @@ enum class PartsMode {
   Each,        ///< each part as a mesh of its own
 };
 
+/// Where a cloud is seen from. One that a place sees as one layer needs no embedding: the sphere
+/// around that place is one. Its mesh ends where the depth jumps.
+enum class ViewMode {
+  /// The viewpoint of the cloud, the origin, far above a low sheet, or a place that is searched
+  /// for, whichever is the first that sees one layer; none otherwise. None for
+  /// TopologyMode::Sphere.
+  Auto,
+  None,   ///< no place
+  Up,     ///< far above, along z
+  Place,  ///< Options::viewpoint
+};
+
 /// Whether points are consolidated before meshing.
 enum class ConsolidationMode {
   None,  ///< the mesh goes through the given points
@@ -129,6 +141,11 @@ struct Options : Execution {
   /// The topology of the mesh, of which `outliers`, `parts`, `surface`, `handles` and
   /// `intersections` override a part each.
   TopologyMode topology = TopologyMode::Scan;
+  /// Where the cloud is seen from. With TopologyMode::Sphere or SurfaceMode::Closed the directions
+  /// from there are the embedding.
+  ViewMode view = ViewMode::Auto;
+  /// The place of ViewMode::Place [unit of the input].
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();
   OutlierMode outliers = OutlierMode::AsTopology;  ///< which points are left out first
   /// OutlierMode::Deviation: outliers deviate by more than the mean and this number of standard
   /// deviations; [0, 1000].

@@ -378,8 +378,24 @@ struct LeftOut {
   std::string text() const;
 };
 
+/// How the place was found from which a cloud is seen.
+enum class ViewSource {
+  Given,   ///< by the caller or the file
+  Origin,  ///< the origin of the coordinates
+  Above,   ///< far away along the shortest side of a low sheet, or along z
+  Rays,    ///< the points lie on an even pattern of rays from there
+  Search,  ///< the parallel view of one layer
+};
+
+/// The place from which a cloud is seen as one layer.
+struct View {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the sensor [unit of the input]
+  ViewSource source = ViewSource::Given;            ///< how it was found
+};
+
 /// The result of reconstruct().
 struct Result {
+  std::optional<View> view;  ///< unset: no place sees the cloud as one layer, or none was wanted
   /// One for each meshed part, the largest first; exactly one with PartsMode::All or Largest.
   std::vector<Surface> surfaces;
   LeftOut left_out;                   ///< points in no surface

@@ -49,6 +49,10 @@ constexpr std::array<const char*, 4> namesOf(FacedBy) {
   return {"normals", "viewpoint", "up", "outward"};
 }
 /// \copydoc namesOf(SurfaceKind)
+constexpr std::array<const char*, 5> namesOf(ViewSource) {
+  return {"given", "origin", "above", "rays", "search"};
+}
+/// \copydoc namesOf(SurfaceKind)
 constexpr std::array<const char*, 5> namesOf(StopReason) {
   return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
 }
@@ -385,7 +389,16 @@ constexpr ResultField visitFields(const LeftOut*, const Visit& visit) {
 }
 
 template <typename Visit>
+constexpr ResultField visitFields(const View*, const Visit& visit) {
+  visit({"place", "of the sensor", 1}, &View::place);
+  visit({"source", "how it was found"}, &View::source);
+  return {"View", "The place from which a cloud is seen as one layer."};
+}
+
+template <typename Visit>
 constexpr ResultField visitFields(const Result*, const Visit& visit) {
+  visit({"view", "the place from which the cloud is seen as one layer; none if there is none"},
+        [](auto& r) { return r.view ? &*r.view : nullptr; });
   visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Result::verdict);
   visit({"findings", "of all surfaces; with several, each names its parts"}, &Result::findings);
   visit({"usable", "all surfaces are usable"}, &Result::isUsable);

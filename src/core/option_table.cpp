@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -147,6 +148,33 @@ OptionRow outlierRow() {
   return row;
 }
 
+/// The row of the view: a point is the place of ViewMode::Place.
+OptionRow viewRow() {
+  OptionRow row = byDefault(choice<ViewMode>(
+      "view",
+      "where the cloud is seen from as one layer: found (auto), from above (up), or a place", Everybody,
+      {{"auto", ViewMode::Auto}, {"none", ViewMode::None}, {"up", ViewMode::Up}}, &Options::view));
+  row.is_point = true;
+  row.get = [name_of = row.get](const Options& options) -> OptionValue {
+    if (options.view != ViewMode::Place)
+      return name_of(options);
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << options.viewpoint.x() << ',' << options.viewpoint.y() << ',' << options.viewpoint.z();
+    return text.str();
+  };
+  row.set = [set_name = row.set](Options& options, const OptionValue& value) {
+    if (const auto place = toPoint(std::get<std::string>(value))) {
+      options.view = ViewMode::Place;
+      options.viewpoint = *place;
+    } else {
+      set_name(options, value);
+    }
+  };
+  return row;
+}
+
 std::vector<OptionRow> pointRows() {
   return {
       byDefault(choice<TopologyMode>(
@@ -155,6 +183,7 @@ std::vector<OptionRow> pointRows() {
           "points), or one sphere through every point",
           Everybody, {{"scan", TopologyMode::Scan}, {"sphere", TopologyMode::Sphere}},
           &Options::topology)),
+      viewRow(),
       outlierRow(),
       choice<PartsMode>(
           "parts",
@@ -268,8 +297,11 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   }
   const auto* name = std::get_if<std::string>(&value);
   if (name != nullptr || !row.is_number) {
-    if (name == nullptr ||
-        std::find(row.choices.begin(), row.choices.end(), *name) == row.choices.end())
+    const bool is_known =
+        name != nullptr &&
+        (std::find(row.choices.begin(), row.choices.end(), *name) != row.choices.end() ||
+         (row.is_point && toPoint(*name)));
+    if (!is_known)
       refuse(row, given + (row.choices.empty() ? " is not a number" : " is not known"));
     return;
   }
@@ -325,10 +357,26 @@ std::string rangeOf(const OptionRow& row) {
       text << " up";
     ranges.push_back(text.str());
   }
+  if (row.is_point)
+    ranges.emplace_back("x,y,z");
   std::string text;
   for (std::size_t i = 0; i < ranges.size(); ++i)
     text += (i == 0 ? "" : i + 1 < ranges.size() ? ", " : " or ") + ranges[i];
   return text;
+}
+
+std::optional<Eigen::Vector3d> toPoint(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  Eigen::Vector3d point;
+  for (int k = 0; k < 3; ++k) {
+    stream >> point[k];
+    if (k < 2 && stream.get() != ',')
+      return std::nullopt;
+  }
+  const bool is_point = stream && stream.peek() == std::istringstream::traits_type::eof() &&
+                        point.allFinite();
+  return is_point ? std::optional<Eigen::Vector3d>(point) : std::nullopt;
 }
 
 std::string textOf(const OptionValue& value) {
@@ -350,6 +398,8 @@ Options withTopology(Options options) {
     if (mode == decltype(of_scan)::AsTopology)
       mode = is_scan ? of_scan : of_sphere;
   };
+  if (!is_scan && (options.view == ViewMode::Auto || options.method == Method::Paper))
+    options.view = ViewMode::None;
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);
   resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);

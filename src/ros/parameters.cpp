@@ -84,8 +84,8 @@ Parameter option(const OptionRow& row) {
                      row.optional ? kUnset : row.min,
                      row.max,
                      row.choices};
-  if (row.is_number && isText(row)) {
-    // Any text: a number may be among them.
+  if ((row.is_number || row.is_point) && isText(row)) {
+    // Any text: a number, or a point, may be among them.
     info.choices.clear();
     info.min = info.max = 0.0;
   }

@@ -59,7 +59,8 @@ const OptionInfo* knownOption(const std::string& name, const OptionTable& option
 }
 
 OptionValue parseValue(const OptionRow& row, const std::string& flag, const std::string& text) {
-  if (std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end()) {
+  if (std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end() ||
+      (row.is_point && spherical_param::toPoint(text))) {
     return text;
   }
   std::optional<double> number = row.is_number ? toReal(text) : std::nullopt;
@@ -96,6 +97,9 @@ OptionInfo optionOf(const OptionRow& row, const std::function<OptionValue()>& ge
   std::vector<std::string> arguments = row.choices;
   if (row.is_number) {
     arguments.emplace_back(row.is_integer ? "N" : "X");
+  }
+  if (row.is_point) {
+    arguments.emplace_back("X,Y,Z");
   }
   std::string argument;
   for (const std::string& each : arguments) {

@@ -107,7 +107,7 @@ double EnergyMesh::flipGain(Index t, int corner, double floor) const {
 
 bool EnergyMesh::flip(Index t, int corner, double gain) {
   const Index o = mesh_.neighbor(t, corner);
-  if (!mesh_.flip(t, corner))
+  if ((may_flip_ && !may_flip_(mesh_.diamond(t, corner))) || !mesh_.flip(t, corner))
     return false;
   update(t);
   update(o);

@@ -42,6 +42,9 @@ public:
   }
   /// That of the whole mesh [unit()].
   double energy() const;
+  /// Which flips are allowed; all of them at first.
+  using FlipRule = std::function<bool(const SphereMesh::Diamond&)>;
+  void setFlipRule(FlipRule rule) { may_flip_ = std::move(rule); }
   /// Other points, or other places of the openings.
   void setPoints(const Positions& points);
   /// Other triangles, as many.
@@ -91,6 +94,7 @@ private:
   double unit_ = 1.0;
   double change_ = 0.0;  ///< of the energy since the first begin()
   Indexed<Facet> facets_;
+  FlipRule may_flip_;
   std::vector<Before> open_;
   std::vector<std::pair<Index, Facet>> old_facets_;
 };
