@@ -317,10 +317,19 @@ void summarize(std::size_t parts_in_all, Result& result) {
       const auto found = std::count_if(surfaces.begin(), surfaces.end(), has);
       return found == 0 ? "" : grouped(static_cast<std::size_t>(found)) + of;
     };
-    result.verdict = grouped(surfaces.size()) + " surfaces, " +
-                     count(" with openings, ", [](const Surface& s) { return !s.isClosed(); }) +
-                     count(" with handles, ", [](const Surface& s) { return s.genus() > 0; }) +
-                     (faulty == 0 ? "all sound." : grouped(faulty) + " with faults.");
+    const bool are_open = std::none_of(surfaces.begin(), surfaces.end(),
+                                       [](const Surface& s) { return s.isClosed(); });
+    result.verdict =
+        grouped(surfaces.size()) + " surfaces" +
+        (result.view && are_open
+             ? " with openings, "
+             : ", " + count(" with openings, ", [](const Surface& s) { return !s.isClosed(); })) +
+        count(" with handles, ", [](const Surface& s) { return s.genus() > 0; }) +
+        (faulty == 0 ? "all sound." : grouped(faulty) + " with faults.");
+  }
+  if (result.view) {
+    result.verdict[0] = result.verdict[0] == 'A' ? 'a' : result.verdict[0];
+    result.verdict.insert(0, "Seen from one place: ");
   }
   LeftOut stray = result.left_out;
   stray.not_finite.clear();

@@ -20,6 +20,7 @@
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
 #include "surface_topology.h"
+#include "view_reconstruction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -332,6 +333,8 @@ Result reconstruct(const Positions& points, const Options& given,
   internal::StageClock clock(options);
   Result result;
   const std::size_t parts = internal::explained(result.left_out, [&] {
+    if (internal::reconstructView(points, options, info, clock, result))
+      return result.surfaces.size();
     internal::Selection selection(points, given, search_of, info, clock, result.left_out);
     internal::meshParts(selection, options, clock, result);
     return selection.parts().size();

@@ -22,16 +22,21 @@ std::vector<Index> without(const std::vector<Index>& points, const std::vector<I
 
 }  // namespace
 
+std::vector<Index> usableInputs(const Positions& points, const CloudInfo& info, LeftOut& left_out) {
+  std::vector<Index> inputs;
+  left_out.unused = info.unused;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    (points.col(i).allFinite() ? inputs : left_out.not_finite).push_back(static_cast<Index>(i));
+  left_out.not_finite = without(left_out.not_finite, info.unused);
+  return without(inputs, info.unused);
+}
+
 Selection::Selection(const Positions& points, const Options& given,
                      const NeighborSearchFactory& search_of, const CloudInfo& info,
                      StageClock& clock, LeftOut& left_out)
     : points_(points), options_(withTopology(given)), search_of_(search_of), info_(info),
       clock_(clock), left_out_(left_out) {
-  left_out.unused = info.unused;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    (points.col(i).allFinite() ? inputs_ : left_out.not_finite).push_back(static_cast<Index>(i));
-  inputs_ = without(inputs_, info.unused);
-  left_out.not_finite = without(left_out.not_finite, info.unused);
+  inputs_ = usableInputs(points, info, left_out);
   if (options_.outliers != OutlierMode::None || options_.parts != PartsMode::All)
     findNeighbors(inputs_).findStars(clock.execution());
   if (options_.outliers != OutlierMode::None)

@@ -11,6 +11,11 @@
 
 namespace spherical_param::internal {
 
+/// The finite points that are used, ascending.
+///
+/// \param left_out receives the others.
+std::vector<Index> usableInputs(const Positions& points, const CloudInfo& info, LeftOut& left_out);
+
 /// The points to mesh: finite points without outliers, in parts. Their neighbours are kept for the
 /// graph.
 class Selection {

@@ -1,133 +1,225 @@
 #include "view_mesh.h"
 
+#include "energy_mesh.h"
 #include "exact_predicates.h"
+#include "flips.h"
 #include "incremental_delaunay.h"
-#include "parallel.h"
+#include "indexed.h"
+#include "sphere_mesh.h"
+#include "tangent_basis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace spherical_param::internal {
 namespace {
 
-class Repair {
+/// The points and the vertex behind the place.
+Positions withBehind(const Positions& points, const ViewMesh& view) {
+  if (view.behind < 0)
+    return points;
+  Positions all(3, points.cols() + 1);
+  all.leftCols(points.cols()) = points;
+  const Positions directions = directionsFrom(view.place, points);
+  all.col(view.behind) = view.place - directions.rowwise().mean().normalized();
+  return all;
+}
+
+/// Signs as a place sees them.
+class Signs {
 public:
-  Repair(const Positions& points, const Eigen::Vector3d& place, SphereMesh& mesh)
-      : points_(points), place_(place), mesh_(mesh) {}
+  Signs(const Eigen::Vector3d& place, const Positions& points) : place_(place), points_(points) {}
 
-  bool faces(Index a, Index b, Index c) const {
-    return orientation3d(place_, points_.col(a), points_.col(b), points_.col(c)) > 0;
+  /// 1 if three vertices are counter-clockwise, seen along the outward triangle.
+  int sign(Index a, Index b, Index c) const {
+    return orientation3d(place_, points_.col(a), points_.col(b), points_.col(c));
   }
-  bool faces(Index t) const {
-    const auto& v = mesh_.vertices(t);
-    return v[0] < 0 || faces(v[0], v[1], v[2]);
-  }
-
-  /// Flips a side of a triangle if both then face.
-  bool flipSide(Index t) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [a, b, c, d] = mesh_.diamond(t, k);
-      if (c != d && faces(c, a, d) && faces(c, d, b) && mesh_.flip(t, k))
-        return true;
-    }
-    return false;
-  }
-
-  /// Takes a vertex out, if that leaves triangles that face only.
-  bool takeOut(Index v) {
-    while (mesh_.degree(v) > 3) {
-      const auto cuts = [&](Index t, int corner) {
-        const int k = (corner + 1) % 3;  // side from v to the next but one
-        const auto [a, b, c, d] = mesh_.diamond(t, k);
-        // v is a or b: the triangle without it has to face.
-        const bool without = (a == v ? faces(c, d, b) : faces(c, a, d));
-        if (!without)
-          return false;
-        // no other neighbour inside: the rest stays star-shaped if the other part faces, or is flat
-        const int rest = a == v ? orientation3d(place_, points_.col(c), points_.col(a), points_.col(d))
-                                : orientation3d(place_, points_.col(c), points_.col(d), points_.col(b));
-        return rest >= 0 && mesh_.flip(t, k);
-      };
-      if (!mesh_.anyAround(v, cuts))
-        return false;
-    }
-    const Index t = mesh_.merge(v);
-    if (t < 0)
-      return false;
-    return true;
+  bool isOutward(const std::array<Index, 3>& t) const { return sign(t[0], t[1], t[2]) > 0; }
+  bool mayFlip(const SphereMesh::Diamond& at) const {
+    return at.c != at.d && sign(at.c, at.a, at.d) > 0 && sign(at.c, at.d, at.b) > 0;
   }
 
 private:
-  const Positions& points_;
   const Eigen::Vector3d& place_;
-  SphereMesh& mesh_;
+  const Positions& points_;
 };
+
+/// Makes the triangles of rounded directions outward in exact arithmetic.
+class Repair {
+public:
+  Repair(const Signs& signs, SphereMesh& mesh, Index behind)
+      : signs_(signs), mesh_(mesh), behind_(behind) {}
+
+  /// Flips sides of triangles that are not outward, then takes points out.
+  ///
+  /// \param hidden receives these.
+  /// \return whether all triangles are outward.
+  bool run(std::vector<Index>& hidden) {
+    std::vector<Index> inward;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (isInward(t))
+        inward.push_back(t);
+    // More than some: it is no rounding.
+    if (10 * inward.size() > static_cast<std::size_t>(mesh_.size()))
+      return false;
+    for (const Index t : inward)
+      if (isInward(t))
+        flipSide(t);
+    for (const Index t : inward)
+      if (isInward(t))
+        takeOutOneOf(t, hidden);
+    std::sort(hidden.begin(), hidden.end());
+    return std::none_of(inward.begin(), inward.end(), [&](Index t) { return isInward(t); });
+  }
+
+private:
+  bool isInward(Index t) const {
+    return mesh_.vertex(t, 0) >= 0 && !signs_.isOutward(mesh_.vertices(t));
+  }
+
+  void flipSide(Index t) {
+    for (int k = 0; k < 3; ++k)
+      if (signs_.mayFlip(mesh_.diamond(t, k)) && mesh_.flip(t, k))
+        return;
+  }
+
+  void takeOutOneOf(Index t, std::vector<Index>& hidden) {
+    const std::array<Index, 3> corners = mesh_.vertices(t);
+    for (const Index v : corners)
+      if (v != behind_ && takeOut(v)) {
+        hidden.push_back(v);
+        return;
+      }
+  }
+
+  /// Takes a vertex out: flips its edges away, while the rest around it is not turned over.
+  bool takeOut(Index v) {
+    const auto flips_away = [&](Index t, int corner) {
+      const int k = nextOf(corner);
+      const auto [a, b, c, d] = mesh_.diamond(t, k);
+      // Of the two triangles (c, a, d) and (c, d, b) one is left without v.
+      const bool is_cut = a == v ? signs_.sign(c, d, b) > 0 && signs_.sign(c, a, d) >= 0
+                                 : signs_.sign(c, a, d) > 0 && signs_.sign(c, d, b) >= 0;
+      return is_cut && mesh_.flip(t, k);
+    };
+    while (mesh_.degree(v) > 3)
+      if (!mesh_.anyAround(v, flips_away))
+        return false;
+    return mesh_.merge(v) >= 0;
+  }
+
+  static int nextOf(int corner) { return (corner + 1) % 3; }
+
+  const Signs& signs_;
+  SphereMesh& mesh_;
+  Index behind_;
+};
+
+/// Whether the triangles are once around the place: one of them is over a direction.
+bool areOnceAround(const Signs& signs, Positions& points, const SphereMesh& mesh) {
+  // The middle of a triangle, the last of the points.
+  const auto middle = static_cast<Index>(points.cols());
+  Index of = 0;
+  while (mesh.vertex(of, 0) < 0)
+    ++of;
+  const auto& corners = mesh.vertices(of);
+  points.conservativeResize(3, middle + 1);
+  points.col(middle) =
+      (points.col(corners[0]) + points.col(corners[1]) + points.col(corners[2])) / 3.0;
+  std::size_t over = 0;
+  for (Index t = 0; t < mesh.size(); ++t)
+    if (mesh.vertex(t, 0) >= 0) {
+      const auto& [a, b, c] = mesh.vertices(t);
+      over += signs.sign(a, b, middle) >= 0 && signs.sign(b, c, middle) >= 0 &&
+                      signs.sign(c, a, middle) >= 0
+                  ? 1
+                  : 0;
+    }
+  points.conservativeResize(3, middle);
+  return over == 1;
+}
+
+/// The mesh from exactly this place; without triangles if there is none.
+ViewMesh triangulateFrom(const Eigen::Vector3d& place, const Positions& points, bool has_behind,
+                         const FractionReport& report) {
+  ViewMesh view;
+  view.place = place;
+  view.behind = has_behind ? static_cast<Index>(points.cols()) : -1;
+  Positions all = withBehind(points, view);
+  SphereMesh mesh(incrementalDelaunay(directionsFrom(place, all), report).triangles,
+                  columnCount(all));
+  const Signs signs(place, all);
+  if (Repair(signs, mesh, view.behind).run(view.hidden) && areOnceAround(signs, all, mesh))
+    view.triangles = mesh.triangles();
+  return view;
+}
+
+/// The same; a vertex behind the place closes the mesh if all points are in front of it.
+ViewMesh triangulateAround(const Eigen::Vector3d& place, const Positions& points,
+                           const FractionReport& report) {
+  const Positions directions = directionsFrom(place, points);
+  const Eigen::Vector3d mean = directions.rowwise().mean();
+  if ((mean.transpose() * directions).minCoeff() > 0.0)
+    return triangulateFrom(place, points, true, report);
+  // The mean may be off the middle: then points are in front of the place, but not of the mean.
+  ViewMesh view = triangulateFrom(place, points, false, report);
+  return view.triangles.cols() > 0 ? view : triangulateFrom(place, points, true, report);
+}
 
 }  // namespace
 
 Positions directionsFrom(const Eigen::Vector3d& place, const Positions& points) {
   Positions directions = points.colwise() - place;
-  for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    directions.col(i).normalize();
+  for (auto direction : directions.colwise()) {
+    const double length = direction.stableNorm();
+    if (length > 0.0)
+      direction /= length;
+    else
+      direction = Eigen::Vector3d::UnitZ();
+  }
   return directions;
 }
 
-std::optional<ViewMesh> triangulateView(const Positions& points, const Eigen::Vector3d& place, const Execution&) {
-  const Eigen::Index n = points.cols();
-  Positions directions = directionsFrom(place, points);
-  if (!directions.allFinite())
-    return std::nullopt;
-  ViewMesh result;
-  const Eigen::Vector3d mean = directions.rowwise().mean();
-  const bool in_front = mean.norm() > 0 && (mean.transpose() * directions).minCoeff() > 1e-3 * mean.norm();
-  result.points = points;
-  if (in_front) {
-    result.points.conservativeResize(3, n + 1);
-    directions.conservativeResize(3, n + 1);
-    result.points.col(n) = place - mean.normalized();
-    directions.col(n) = -mean.normalized();
-    result.behind = static_cast<Index>(n);
+ViewMesh triangulateView(const Positions& points, const Eigen::Vector3d& place,
+                         const FractionReport& report) {
+  // As the points see the place move [rad]: so little that hardly a depth jump looks different.
+  constexpr std::array<double, 3> moves = {0.001, 0.004, 0.016};
+  constexpr std::size_t hidden_of = 2000;
+  ViewMesh best = triangulateAround(place, points, report);
+  const Eigen::Vector3d ray = points.rowwise().mean() - place;
+  const TangentBasis across = tangentBasis(ray.normalized());
+  for (const double move : moves) {
+    if (best.triangles.cols() > 0 && hidden_of * best.hidden.size() <= columnCount(points))
+      break;
+    ViewMesh moved = triangulateAround(
+        place + move * ray.norm() * (0.6 * across.col(0) + 0.8 * across.col(1)), points, report);
+    if (moved.triangles.cols() > 0 &&
+        (best.triangles.cols() == 0 || moved.hidden.size() < best.hidden.size()))
+      best = std::move(moved);
   }
-  const SphereDelaunay delaunay = incrementalDelaunay(directions, {});
-  directions.resize(3, 0);
-  SphereMesh mesh(delaunay.triangles, static_cast<std::size_t>(result.points.cols()));
-  Repair repair(result.points, place, mesh);
-  std::vector<Index> bad;
-  for (Index t = 0; t < mesh.size(); ++t)
-    if (!repair.faces(t))
-      bad.push_back(t);
-  fprintf(stderr, "behind %d coincident %d bad %zu", result.behind, delaunay.coincident, bad.size());
-  std::size_t left = 0;
-  for (int round = 0; round < 5 && !bad.empty(); ++round) {
-    std::vector<Index> still;
-    for (const Index t : bad)
-      if (!repair.faces(t) && !repair.flipSide(t))
-        still.push_back(t);
-    bad.clear();
-    for (const Index t : still)
-      if (!repair.faces(t))
-        bad.push_back(t);
-  }
-  left = bad.size();
-  for (const Index t : bad) {
-    if (repair.faces(t))
-      continue;
-    for (int k = 0; k < 3; ++k) {
-      const Index v = mesh.vertex(t, k);
-      if (v == result.behind)
-        continue;
-      if (repair.takeOut(v)) {
-        result.hidden.push_back(v);
-        break;
-      }
-    }
-  }
-  std::size_t still = 0;
-  for (Index t = 0; t < mesh.size(); ++t)
-    still += !repair.faces(t);
-  fprintf(stderr, " unflippable %zu hidden %zu still %zu\n", left, result.hidden.size(), still);
-  result.triangles = mesh.triangles();
-  return result;
+  return best;
+}
+
+void flipInView(const Positions& points, ViewMesh& view, const Execution& execution,
+                const std::function<bool()>& ends) {
+  const Positions all = withBehind(points, view);
+  Graph graph;  // of which the energy knows the unit only
+  std::vector<double> lengths;
+  for (const auto& t : view.triangles.colwise())
+    lengths.push_back((all.col(t[0]) - all.col(t[1])).norm());
+  graph.lengths.push_back(medianOf(lengths));
+  EnergyMesh mesh(all, view.triangles, graph, execution.threads);
+  const Signs signs(view.place, all);
+  mesh.setFlipRule([&](const SphereMesh::Diamond& at) {
+    const auto is_behind = [&](Index v) { return v == view.behind; };
+    return !is_behind(at.a) && !is_behind(at.b) && !is_behind(at.c) && !is_behind(at.d) &&
+           signs.mayFlip(at);
+  });
+  Flips(mesh).flipAll(reportOf(execution, "optimization"), ends);
+  view.triangles = mesh.mesh().triangles();
 }
 
 }  // namespace spherical_param::internal

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "indexed.h"
+#include "open_mesh.h"
+#include "spherical_param/types.h"
+#include "view_mesh.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// The distance of each point to its sixth neighbour.
+///
+/// \param points 3 x n, n >= 2.
+Indexed<double> spacingOf(const Positions& points, const Execution& execution);
+
+/// Opens the mesh of a view where the depth jumps: at sides that are longer than 4 times the
+/// smaller spacing of their ends (8 times, if they run more across the rays than along them), or
+/// within 5 degrees of the ray and longer than that spacing. What is left is an oriented manifold
+/// with boundary.
+///
+/// Of points that would be in no piece of `min_points` points, and in narrow gaps between surfaces
+/// that meet in one point, the rule is milder: 6 times, and sides at which the surface goes
+/// straight on at both ends are no jumps. So the rims of scans, which are sampled sparsely, stay.
+///
+/// \param points  3 x n.
+/// \param spacing of the points, \see spacingOf.
+/// \param view    of these points.
+OpenMesh openJumps(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view,
+                   std::size_t min_points);
+
+/// A gap within a surface, and the triangles over it.
+struct Gap {
+  std::vector<Index> loop;       ///< vertices around it
+  std::vector<Index> triangles;  ///< of the OpenMesh
+  double area = 0.0;             ///< length of the vector area of the loop
+};
+
+/// Fills the gaps whose loops have at most a number of edges or an area, with the triangles that
+/// were opened there.
+///
+/// \return these gaps.
+std::vector<Gap> fillGaps(const Positions& points, const ViewMesh& view, std::size_t most_edges,
+                          double most_area, OpenMesh& open);
+
+}  // namespace spherical_param::internal

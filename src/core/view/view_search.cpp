@@ -1,0 +1,425 @@
+#include "view_search.h"
+
+#include "depth_jumps.h"
+#include "neighbor_search.h"
+#include "rows.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Sides longer than this many spacings jump.
+constexpr double kJump = 4.0;
+/// Every so many points of a cloud, at most a number of them.
+std::vector<Index> sampleOf(const Positions& points, Eigen::Index most) {
+  const Eigen::Index n = std::min(points.cols(), most);
+  std::vector<Index> sample;
+  for (Eigen::Index i = 0; i < n; ++i)
+    sample.push_back(static_cast<Index>(i * points.cols() / n));
+  return sample;
+}
+
+Eigen::Vector3d middleOf(const Positions& points) {
+  return (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2.0;
+}
+
+/// Directions that are evenly spread over the sphere.
+std::vector<Eigen::Vector3d> spreadDirections(int count) {
+  constexpr double golden_angle = 2.399963229728653;
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count;
+    const double across = std::sqrt(1.0 - z * z);
+    directions.emplace_back(across * std::cos(i * golden_angle),
+                            across * std::sin(i * golden_angle), z);
+  }
+  return directions;
+}
+
+/// Axes of the spread of points, the shortest first, and their variances.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Positions& points) {
+  const Positions centered = points.colwise() - points.rowwise().mean();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+      Eigen::Matrix3d(centered * centered.transpose()));
+}
+
+/// Moves a place along axes while a cost falls, with shorter and shorter steps.
+///
+/// \param most_moves with each step.
+template <typename Cost>
+double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double least_step,
+               int most_moves, Eigen::Vector3d& place) {
+  double best = cost(place);
+  for (; step > least_step; step /= 2.0)
+    for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < most_moves; k = (k + 7) % 6) {
+      const Eigen::Vector3d other = place + (k % 2 == 0 ? step : -step) * axes.col(k / 2);
+      const double found = cost(other);
+      if (!(found < best)) {
+        ++failed;
+        continue;
+      }
+      best = found;
+      place = other;
+      failed = 0;
+      ++moves;
+      --k;  // the same way again
+    }
+  return best;
+}
+
+}  // namespace
+
+bool Sight::isOneLayer() const {
+  // Of 25 scans from their true places: jumps up to 0.05, layers 0.003, roughness 1; all around,
+  // 0.1, 0.034 and 0.3. Of 100 objects from elsewhere, with layers of more than 4 spacings: jumps
+  // from 0.14 on; with thinner ones, roughness from 1.6 on.
+  constexpr double max_roughness = 1.3;
+  return roughness < max_roughness && jumps < (is_around ? 0.2 : 0.15) &&
+         layers < (is_around ? 0.06 : 0.02);
+}
+
+Sight assessView(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view) {
+  const auto n = static_cast<Index>(points.cols());
+  struct Around {
+    int edges = 0;
+    int jumps = 0;
+    int mixed = 0;  ///< neighbours most of whose edges jump
+    double depth = 0.0;
+    double across = 0.0;
+  };
+  Indexed<Around> around(columnCount(points));
+  const Positions directions = directionsFrom(view.place, points);
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const auto& t : view.triangles.colwise())
+      for (int k = 0; k < 3; ++k)
+        if (t[k] < t[(k + 1) % 3] && t[(k + 1) % 3] < n)
+          visit(t[k], t[(k + 1) % 3]);
+  };
+  std::size_t edges = 0;
+  std::size_t jumps = 0;
+  for_each_edge([&](Index v, Index w) {
+    const bool is_jump =
+        (points.col(v) - points.col(w)).norm() > kJump * std::min(spacing[v], spacing[w]);
+    const double depth = directions.col(v).dot(points.col(v) - view.place);
+    const double depth_there = directions.col(w).dot(points.col(w) - view.place);
+    const double across =
+        (directions.col(v) - directions.col(w)).norm() * std::sqrt(depth * depth_there);
+    around[v].depth += depth_there - depth;
+    around[w].depth += depth - depth_there;
+    for (const Index end : {v, w}) {
+      ++around[end].edges;
+      around[end].jumps += is_jump ? 1 : 0;
+      around[end].across += across;
+    }
+    ++edges;
+    jumps += is_jump ? 1 : 0;
+  });
+  const auto is_mixed = [&](Index v) { return 2 * around[v].jumps > around[v].edges; };
+  for_each_edge([&](Index v, Index w) {
+    around[v].mixed += is_mixed(w) ? 1 : 0;
+    around[w].mixed += is_mixed(v) ? 1 : 0;
+  });
+  std::size_t layered = 0;
+  std::vector<double> roughness;
+  for (Index v = 0; v < n; ++v)
+    if (around[v].edges > 0) {
+      layered += is_mixed(v) && 2 * around[v].mixed >= around[v].edges ? 1 : 0;
+      roughness.push_back(std::abs(around[v].depth) / around[v].across);
+    }
+  Sight sight;
+  if (edges == 0)
+    return sight;
+  sight.jumps = static_cast<double>(jumps) / static_cast<double>(edges);
+  sight.layers = static_cast<double>(layered) / static_cast<double>(n);
+  sight.roughness = medianOf(roughness);
+  sight.is_around = view.behind < 0;
+  return sight;
+}
+
+RayPattern::RayPattern(const Positions& points, const NeighborSearch& search) {
+  constexpr Eigen::Index most = 2000;
+  constexpr int neighbors = 6;
+  const std::vector<Index> sample = sampleOf(points, most);
+  const NeighborLists lists = search(sample, neighbors);
+  points_ = points(Eigen::all, sample);
+  nearest_.resize(3, points_.cols());
+  spacing_.resize(points_.cols());
+  for (Index i = 0; i < points_.cols(); ++i) {
+    const auto near =
+        nearestOthers(points, sample[static_cast<std::size_t>(i)], listOf(lists, i), neighbors);
+    nearest_.col(i) = points.col(near.front().point);
+    spacing_[i] = std::log(near.back().squared_distance) / 2.0;
+  }
+}
+
+/// Mean deviation of the logarithm of the angle between neighbouring rays from its median or from a
+/// quadratic function of the direction: pinhole cameras and scanners on a tripod have some.
+double RayPattern::unevenness(const Eigen::Vector3d& place, bool is_quadratic) const {
+  constexpr double least_angle = 1e-12;
+  constexpr double outlier = 0.7;
+  constexpr int rounds = 2;
+  constexpr int terms = 10;
+  const Eigen::Index n = points_.cols();
+  Eigen::VectorXd angle(n);
+  Eigen::Matrix<double, Eigen::Dynamic, terms> monomials(is_quadratic ? n : 0, terms);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d d = (points_.col(i) - place).normalized();
+    angle[i] = std::log(d.cross((nearest_.col(i) - place).normalized()).norm() + least_angle);
+    if (is_quadratic)
+      monomials.row(i) << 1.0, d.x(), d.y(), d.z(), d.x() * d.x(), d.x() * d.y(), d.x() * d.z(),
+          d.y() * d.y(), d.y() * d.z(), d.z() * d.z();
+  }
+  std::vector<double> values(angle.data(), angle.data() + n);
+  angle.array() -= medianOf(values);
+  Eigen::VectorXd rest = angle;
+  for (int round = 0; is_quadratic && round < rounds; ++round) {
+    const Eigen::VectorXd weights = (rest.array().abs() < outlier).cast<double>();
+    Eigen::Matrix<double, terms, terms> normal =
+        monomials.transpose() * weights.asDiagonal() * monomials;
+    normal.diagonal().array() += 1e-6 * static_cast<double>(n);
+    rest = angle -
+           monomials * normal.ldlt().solve(monomials.transpose() * weights.cwiseProduct(angle));
+  }
+  const double mean = rest.cwiseAbs().cwiseMin(1.0).mean();
+  return std::isfinite(mean) ? mean : 1.0;
+}
+
+bool RayPattern::isSensor(const Eigen::Vector3d& place) const {
+  // Of sensors up to 0.09, also in coarse steps of depth; from elsewhere, and of objects, from 0.15
+  // on.
+  constexpr double max_unevenness = 0.12;
+  if (unevenness(place, true) < max_unevenness)
+    return true;
+  // The slope of the logarithms is 1 to 1.4 of scanners, and -0.9 to 0.3 of objects.
+  constexpr double min_correlation = 0.8;
+  const Eigen::ArrayXd distance = (points_.colwise() - place).colwise().norm().array().log();
+  const Eigen::ArrayXd x = distance - distance.mean();
+  const Eigen::ArrayXd y = spacing_.array() - spacing_.mean();
+  const double common = (x * y).sum();
+  const double slope = common / x.square().sum();
+  return slope > 0.5 && slope < 2.0 &&
+         common > min_correlation * std::sqrt(x.square().sum() * y.square().sum());
+}
+
+/// The middle of the points with the least spacing.
+Eigen::Vector3d RayPattern::densest() const {
+  constexpr Eigen::Index part_of = 50;
+  std::vector<Index> order = firstIndices(columnCount(points_));
+  const Eigen::Index part = points_.cols() / part_of + 1;
+  std::partial_sort(order.begin(), order.begin() + part, order.end(), [&](Index a, Index b) {
+    return std::pair(spacing_[a], a) < std::pair(spacing_[b], b);
+  });
+  order.resize(static_cast<std::size_t>(part));
+  return points_(Eigen::all, order).rowwise().mean();
+}
+
+std::optional<Eigen::Vector3d> RayPattern::find() const {
+  constexpr int directions = 50;
+  constexpr std::size_t kept = 1;
+  constexpr double first_step = 0.2;
+  constexpr double coarse_step = 0.01;
+  constexpr double least_step = 5e-4;
+  constexpr int most_moves = 10;
+  const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
+  const Eigen::Vector3d middle = middleOf(points_);
+  const double extent = (points_.rowwise().maxCoeff() - points_.rowwise().minCoeff()).norm();
+  std::vector<std::pair<double, Eigen::Vector3d>> places;
+  for (const double radii : {0.3, 0.6, 1.2, 2.5})
+    for (const Eigen::Vector3d& direction : spreadDirections(directions)) {
+      const Eigen::Vector3d place = middle + radii * extent * direction;
+      places.emplace_back(unevenness(place, false), place);
+    }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  // A scanner within the points is near where they are densest, in a narrow valley of the cost.
+  places.resize(kept);
+  places.emplace_back(0.0, densest());
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d best = middle;
+  for (auto& [cost, place] : places) {
+    for (const bool is_quadratic : {false, true}) {
+      const double found =
+          descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); }, axes,
+                  first_step * extent, (is_quadratic ? least_step : coarse_step) * extent,
+                  most_moves, place);
+      if (is_quadratic && found < least) {
+        least = found;
+        best = place;
+      }
+    }
+  }
+  return isSensor(best) ? std::optional(best) : std::nullopt;
+}
+
+bool isElevationGrid(const Positions& points) {
+  constexpr std::size_t min_lines = 10;
+  std::array<std::vector<double>, 2> lines;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const auto row = points.row(k);
+    lines[static_cast<std::size_t>(k)].assign(row.begin(), row.end());
+    sortUnique(lines[static_cast<std::size_t>(k)]);
+  }
+  return std::min(lines[0].size(), lines[1].size()) >= min_lines &&
+         lines[0].size() * lines[1].size() <= 2 * columnCount(points);
+}
+
+Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis) {
+  // So far that rays are parallel within a thousandth, and so near that directions differ.
+  constexpr double extents = 1024.0;
+  const double extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+  return middleOf(points) + extents * extent * axis.normalized();
+}
+
+namespace {
+
+/// The shortest axis of a low sheet, up; none of others.
+std::optional<Eigen::Vector3d> axisOfSheet(const Positions& points) {
+  // Terrain has 0.05 to 0.21, objects from 0.28 on.
+  constexpr double max_flatness = 0.25;
+  const auto solver = axesOf(points);
+  const Eigen::Vector3d variances = solver.eigenvalues();
+  if (!(variances[0] < max_flatness * max_flatness * variances[1]))
+    return std::nullopt;
+  const Eigen::Vector3d axis = solver.eigenvectors().col(0);
+  return axis.z() < 0.0 ? Eigen::Vector3d(-axis) : axis;
+}
+
+class Searcher {
+public:
+  Searcher(const Positions& points, const Execution& execution)
+      : points_(points), execution_(execution), search_(makeNeighborSearch(points, execution)) {}
+
+  std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
+    // Smaller clouds are meshed so fast that a look or a search does not pay.
+    constexpr Eigen::Index min_points = 1000;
+    constexpr Eigen::Index min_searched = 20000;
+    if (!viewpoint.isZero(0.0))
+      if (auto found = from(viewpoint, ViewSource::Given))
+        return found;
+    if (points_.cols() < min_points)
+      return std::nullopt;
+    const RayPattern pattern(points_, search_);
+    if (pattern.isSensor(Eigen::Vector3d::Zero()))
+      if (auto found = from(Eigen::Vector3d::Zero(), ViewSource::Origin))
+        return found;
+    if (isElevationGrid(points_))
+      return from(farAbove(points_, Eigen::Vector3d::UnitZ()), ViewSource::Above);
+    if (points_.cols() >= min_searched)
+      if (const auto place = pattern.find())
+        if (auto found = from(refined(*place), ViewSource::Rays))
+          return found;
+    const auto axis = axisOfSheet(points_);
+    return axis ? from(farAbove(points_, *axis), ViewSource::Above) : std::nullopt;
+  }
+
+private:
+  /// The view from a place, if it is of one layer.
+  std::optional<FoundView> from(const Eigen::Vector3d& place, ViewSource source) {
+    constexpr Eigen::Index most = 2500;
+    constexpr double max_jumps = 0.25;
+    if (points_.cols() > 2 * most) {
+      const Positions sample = points_(Eigen::all, sampleOf(points_, most));
+      const Sight sight =
+          assessView(sample, spacingOf(sample, execution_), triangulateView(sample, place, {}));
+      if (!(sight.jumps < max_jumps))
+        return std::nullopt;
+    }
+    FoundView found{triangulateView(points_, place, {}), source};
+    const Sight sight = assessView(points_, spacing(), found.mesh);
+    // All around a place without a sensor is an object that may fold, unless nothing jumps.
+    const bool may_fold = source != ViewSource::Rays && sight.is_around && sight.jumps > 0.0 &&
+                          !RayPattern(points_, search_).isSensor(place);
+    return sight.isOneLayer() && !may_fold ? std::optional(std::move(found)) : std::nullopt;
+  }
+
+  const Indexed<double>& spacing() {
+    if (spacing_.empty())
+      spacing_ = spacingOf(points_, execution_);
+    return spacing_;
+  }
+
+  /// The place nearby from which the depth jumps least.
+  Eigen::Vector3d refined(Eigen::Vector3d place) {
+    constexpr int most_moves = 4;
+    const double extent = (points_.rowwise().maxCoeff() - points_.rowwise().minCoeff()).norm();
+    const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
+    double least = 1.0;
+    std::vector<Index> window;
+    Eigen::Vector3d next = place;
+    constexpr int rounds = 12;
+    constexpr double least_step = 0.001;
+    double step = 0.02;
+    for (int round = 0; round < rounds && step > least_step; ++round) {
+      const ViewMesh view = triangulateView(points_, next, {});
+      const double jumps = assessView(points_, spacing(), view).jumps;
+      if (jumps < least) {
+        least = jumps;
+        place = next;
+        window = windowsAtJumps(view);
+      } else {
+        step /= 2.0;
+      }
+      const Positions points = points_(Eigen::all, window);
+      Indexed<double> spacing(window.size());
+      for (std::size_t i = 0; i < window.size(); ++i)
+        spacing[i] = spacing_[window[i]];
+      next = place;
+      descend(
+          [&](const Eigen::Vector3d& at) {
+            return assessView(points, spacing, triangulateView(points, at, {})).jumps;
+          },
+          axes, step * extent, 0.6 * step * extent, most_moves, next);
+    }
+    return place;
+  }
+
+  /// All points that are seen near some jumps, ascending.
+  std::vector<Index> windowsAtJumps(const ViewMesh& view) const {
+    constexpr std::size_t windows = 16;
+    constexpr std::ptrdiff_t points_of_window = 250;
+    std::vector<Index> jumps;
+    for (const auto& t : view.triangles.colwise())
+      if (t[0] != view.behind && t[1] != view.behind &&
+          (points_.col(t[0]) - points_.col(t[1])).norm() >
+              kJump * std::min(spacing_[t[0]], spacing_[t[1]]))
+        jumps.push_back(t[0]);
+    const Positions directions = directionsFrom(view.place, points_);
+    const auto size = std::min<std::ptrdiff_t>(points_of_window, points_.cols());
+    std::vector<Index> all;
+    for (std::size_t i = 0; i < std::min(windows, jumps.size()); ++i) {
+      const Eigen::VectorXd cosines =
+          directions.transpose() * directions.col(jumps[i * jumps.size() / windows]);
+      std::vector<Index> order = firstIndices(columnCount(points_));
+      std::nth_element(order.begin(), order.begin() + size - 1, order.end(), [&](Index a, Index b) {
+        return std::pair(-cosines[a], a) < std::pair(-cosines[b], b);
+      });
+      all.insert(all.end(), order.begin(), order.begin() + size);
+    }
+    sortUnique(all);
+    return all;
+  }
+
+  const Positions& points_;
+  const Execution& execution_;
+  NeighborSearch search_;
+  Indexed<double> spacing_;
+};
+
+}  // namespace
+
+std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
+                                  const Execution& execution) {
+  return Searcher(points, execution).run(viewpoint);
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "indexed.h"
+#include "spherical_param/result.h"
+#include "spherical_param/types.h"
+#include "view_mesh.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace spherical_param::internal {
+
+/// How a place sees a cloud.
+struct Sight {
+  /// Share of the edges of the view that are longer than 4 times the smaller spacing of their ends:
+  /// the depth jumps there.
+  double jumps = 1.0;
+  /// Share of the points most of whose edges jump, as those of most of their neighbours: jumps are
+  /// lines, but layers behind each other are areas.
+  double layers = 1.0;
+  /// Median difference in depth of a point from its neighbours, in distances across the rays: up to
+  /// 1 of noisy scans, from 1.6 on of two layers, however coarse.
+  double roughness = 1.0;
+  bool is_around = false;  ///< points are all around the place
+
+  /// Whether the place sees one layer.
+  bool isOneLayer() const;
+};
+
+/// \param points  3 x n.
+/// \param spacing of the points, \see spacingOf.
+/// \param view    of these points.
+Sight assessView(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view);
+
+/// What the sampling of a cloud tells of the sensor.
+class RayPattern {
+public:
+  /// \param points 3 x n, of an extent about 1.
+  /// \param search among them.
+  RayPattern(const Positions& points, const NeighborSearch& search);
+
+  /// Whether a sensor there saw the points: the angles between neighbouring rays hardly change, or
+  /// the spacing grows with the distance.
+  bool isSensor(const Eigen::Vector3d& place) const;
+
+  /// The place from which the angles between neighbouring rays change least; none if they change
+  /// too much.
+  std::optional<Eigen::Vector3d> find() const;
+
+private:
+  double unevenness(const Eigen::Vector3d& place, bool is_quadratic) const;
+  Eigen::Vector3d densest() const;
+
+  Positions points_;  ///< some of them
+  Positions nearest_;
+  Eigen::VectorXd spacing_;
+};
+
+/// The mesh of a cloud from the first of some places that sees one layer.
+struct FoundView {
+  ViewMesh mesh;
+  ViewSource source;
+};
+
+/// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, far above a low
+/// sheet, and the place where its rays come from.
+///
+/// \param points    3 x n, finite, distinct, of an extent about 1.
+/// \param viewpoint in the unit of the points; the origin if it is unknown.
+/// \return nothing if there is none.
+/// Cost: where there is none, 10 to 50 ms and O(n log n) with a small constant.
+std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
+                                  const Execution& execution);
+
+/// Whether the points are the heights of at least half of the places of a grid in x and y: a
+/// surface without jumps.
+bool isElevationGrid(const Positions& points);
+
+/// A place far above points, along an axis.
+Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,302 @@
+#include "view_reconstruction.h"
+
+#include "boundary_loops.h"
+#include "depth_jumps.h"
+#include "ordered_points.h"
+#include "pi.h"
+#include "power_of_two.h"
+#include "selection.h"
+#include "spherical_param/errors.h"
+#include "union_find.h"
+#include "view_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+bool isGiven(const Options& options) {
+  return options.view == ViewMode::Up || options.view == ViewMode::Place;
+}
+
+/// The option that keeps a view from being meshed; none if there is none.
+const char* obstacleOf(const Options& options) {
+  return options.consolidation != ConsolidationMode::None  ? "consolidation"
+         : options.smoothing > 0                           ? "smoothing"
+         : options.outliers == OutlierMode::Deviation      ? "outliers"
+         : options.intersections == IntersectionMode::Keep ? "intersections"
+                                                           : nullptr;
+}
+
+/// The place that the caller gave, in the unit of nodes.
+Eigen::Vector3d givenPlace(const Positions& nodes, int exponent, const Options& options) {
+  return options.view == ViewMode::Up ? farAbove(nodes, Eigen::Vector3d::UnitZ())
+                                      : timesPowerOfTwo(options.viewpoint, -exponent);
+}
+
+/// The mesh from the place that the caller gave, or from one that is found.
+std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& options,
+                                const CloudInfo& info, const Execution& execution) {
+  if (!isGiven(options)) {
+    const Eigen::Vector3d viewpoint = info.viewpoint.value_or(Eigen::Vector3d::Zero());
+    return findView(nodes.points, timesPowerOfTwo(viewpoint, -nodes.exponent), execution);
+  }
+  const Eigen::Vector3d place = givenPlace(nodes.points, nodes.exponent, options);
+  FoundView view{triangulateView(nodes.points, place, reportOf(execution, "view")),
+                 options.view == ViewMode::Up ? ViewSource::Above : ViewSource::Given};
+  if (view.mesh.triangles.cols() == 0)
+    throw InvalidInput(
+        "reconstruct: seen from the view, the points lie in one plane with it, or on few rays; "
+        "give another view, or none");
+  return view;
+}
+
+/// The points as an elevation grid counts them: without heights.
+Positions withoutHeights(const Positions& points) {
+  Positions flat = points;
+  flat.row(2).setZero();
+  return flat;
+}
+
+/// A boundary loop as an opening.
+Opening openingOf(const Positions& points, std::vector<Index> loop) {
+  Opening opening;
+  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+  const auto count = static_cast<double>(loop.size());
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Eigen::Vector3d from = points.col(loop[i]) - points.col(loop[0]);
+    const Eigen::Vector3d to = points.col(loop[(i + 1) % loop.size()]) - points.col(loop[0]);
+    opening.boundary_length += (to - from).norm();
+    twice += from.cross(to);
+    opening.center += points.col(loop[i]) / count;
+  }
+  opening.area = twice.norm() / 2.0;
+  opening.spacing = opening.boundary_length / count;
+  opening.width =
+      std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
+  opening.certainty = 1.0;
+  opening.loop = std::move(loop);
+  return opening;
+}
+
+/// The piece that each node is in, the largest first; -1: none.
+Indexed<Index> numberPieces(const Triangles& triangles, std::size_t nodes, const Options& options) {
+  const bool is_one = options.parts == PartsMode::All;
+  UnionFind sets = internal::piecesOf(triangles, nodes);
+  const Partition partition(sets);
+  const auto least = is_one ? std::size_t{2} : static_cast<std::size_t>(options.min_points);
+  std::vector<Index> pieces;
+  for (const Index v : indicesOf(partition.sizes))
+    if (partition.sizes[v] >= least)
+      pieces.push_back(v);
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [&](Index a, Index b) { return partition.sizes[a] > partition.sizes[b]; });
+  if (options.parts == PartsMode::Largest && !pieces.empty())
+    pieces.resize(1);
+  Indexed<Index> number(nodes, -1);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    number[pieces[i]] = is_one ? 0 : static_cast<Index>(i);
+  Indexed<Index> piece_of(nodes);
+  for (const Index v : indicesOf(piece_of))
+    piece_of[v] = number[partition.of[v]];
+  return piece_of;
+}
+
+/// Makes surfaces of a mesh that is open at jumps.
+class SurfaceMaker {
+public:
+  SurfaceMaker(const OrderedPoints& nodes, const ViewMesh& view, const OpenMesh& open,
+               const Options& options)
+      : nodes_(nodes), view_(view), open_(open), options_(options),
+        piece_of_(numberPieces(surfaceOf(open), columnCount(nodes.points), options)),
+        vertex_of_node_(columnCount(nodes.points), -1), number_of_(open.is_open.size(), -1) {
+    if (!piece_of_.empty())
+      surfaces_.resize(
+          static_cast<std::size_t>(*std::max_element(piece_of_.begin(), piece_of_.end()) + 1));
+  }
+
+  /// \param inputs of the nodes, ascending.
+  std::vector<Surface> run(const Positions& points, const std::vector<Index>& inputs,
+                           const std::vector<Gap>& filled, LeftOut& left_out) {
+    sortPoints(inputs, left_out);
+    makeTriangles();
+    makeSphere();
+    for (Surface& surface : surfaces_)
+      judge(Positions(points(Eigen::all, surface.input_of_vertex)), surface);
+    addFilled(points, filled);
+    return std::move(surfaces_);
+  }
+
+private:
+  Surface& surfaceAt(Index node) { return surfaces_[static_cast<std::size_t>(piece_of_[node])]; }
+
+  /// Gives each input point to its surface, or to those that are left out.
+  void sortPoints(const std::vector<Index>& inputs, LeftOut& left_out) {
+    Indexed<std::uint8_t> has_triangle(piece_of_.size(), 0);
+    const Triangles surface = surfaceOf(open_);
+    for (const Index v : surface.reshaped())
+      has_triangle[v] = 1;
+    const auto reason = [&](Index node) -> std::vector<Index>& {
+      return has_triangle[node] != 0                                     ? left_out.other_parts
+             : options_.outliers == OutlierMode::Auto && !isHidden(node) ? left_out.outliers
+                                                                         : left_out.unmeshed;
+    };
+    const Indexed<Index> node_of = nodesOfInput(nodes_);
+    for (const Index i : indicesOf(node_of)) {
+      const Index input = inputs[static_cast<std::size_t>(i)];
+      const Index node = node_of[i];
+      if (piece_of_[node] < 0) {
+        reason(node).push_back(input);
+        continue;
+      }
+      Surface& of = surfaceAt(node);
+      Index& vertex = vertex_of_node_[node];
+      if (vertex < 0) {
+        vertex = static_cast<Index>(of.input_of_vertex.size());
+        of.input_of_vertex.push_back(input);
+      }
+      of.inputs.push_back(input);
+      of.vertex_of_input.push_back(vertex);
+    }
+  }
+
+  bool isHidden(Index node) const {
+    return std::binary_search(view_.hidden.begin(), view_.hidden.end(), node);
+  }
+
+  /// The triangles of the surfaces face the place.
+  void makeTriangles() {
+    std::vector<std::vector<Index>> corners(surfaces_.size());
+    for (const Index t : trianglesOfSurface(open_)) {
+      const auto nodes = open_.triangles.col(t);
+      if (piece_of_[nodes[0]] < 0)
+        continue;
+      std::vector<Index>& all = corners[static_cast<std::size_t>(piece_of_[nodes[0]])];
+      number_of_[t] = static_cast<Index>(all.size() / 3);
+      for (const int k : {0, 2, 1})
+        all.push_back(vertex_of_node_[nodes[k]]);
+    }
+    for (std::size_t s = 0; s < surfaces_.size(); ++s)
+      surfaces_[s].triangles = Eigen::Map<const Triangles>(
+          corners[s].data(), 3, static_cast<Eigen::Index>(corners[s].size() / 3));
+  }
+
+  void makeSphere() {
+    for (Surface& surface : surfaces_)
+      surface.sphere.resize(3, static_cast<Eigen::Index>(surface.vertexCount()));
+    const Positions directions = directionsFrom(view_.place, nodes_.points);
+    for (const Index node : indicesOf(piece_of_))
+      if (piece_of_[node] >= 0)
+        surfaceAt(node).sphere.col(vertex_of_node_[node]) = directions.col(node);
+  }
+
+  void judge(const Positions& points, Surface& surface) const {
+    surface.faced_by = FacedBy::Viewpoint;
+    surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options_.threads);
+    if (!surface.topology.closed)
+      surface.boundary = boundaryLoops(surface.triangles, surface.vertexCount());
+    for (const std::vector<Index>& loop : surface.boundary)
+      surface.openings.push_back(openingOf(points, loop));
+    surface.diagnosis.kind =
+        surface.boundary.empty() ? SurfaceKind::ClosedGenus0 : SurfaceKind::Open;
+    if (options_.details)
+      surface.diagnosis.triangle_marks.resize(columnCount(surface.triangles), 0);
+    surface.measures = measureMesh(points, surface.triangles, options_.threads);
+  }
+
+  void addFilled(const Positions& points, const std::vector<Gap>& filled) {
+    for (const Gap& gap : filled) {
+      if (piece_of_[gap.loop.front()] < 0)
+        continue;
+      Surface& surface = surfaceAt(gap.loop.front());
+      std::vector<Index> loop;
+      for (const Index node : gap.loop)
+        loop.push_back(vertex_of_node_[node]);
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+      Opening opening =
+          openingOf(Positions(points(Eigen::all, surface.input_of_vertex)), std::move(loop));
+      opening.is_filled = true;
+      for (const Index t : gap.triangles) {
+        opening.triangles.push_back(number_of_[t]);
+        if (options_.details)
+          surface.diagnosis.triangle_marks[static_cast<std::size_t>(number_of_[t])] =
+              triangle_mark::filled_hole;
+      }
+      std::sort(opening.triangles.begin(), opening.triangles.end());
+      surface.openings.push_back(std::move(opening));
+    }
+  }
+
+  const OrderedPoints& nodes_;
+  const ViewMesh& view_;
+  const OpenMesh& open_;
+  const Options& options_;
+  Indexed<Index> piece_of_;
+  Indexed<Index> vertex_of_node_;
+  Indexed<Index> number_of_;  ///< of each triangle in its surface; -1: in none
+  std::vector<Surface> surfaces_;
+};
+
+}  // namespace
+
+bool reconstructView(const Positions& points, const Options& options, const CloudInfo& info,
+                     StageClock& clock, Result& result) {
+  // A closed mesh is made by the general method, from the directions.
+  if (options.view == ViewMode::None || options.surface == SurfaceMode::Closed)
+    return false;
+  if (const char* const obstacle = obstacleOf(options)) {
+    if (isGiven(options))
+      throw InvalidInput(std::string("reconstruct: ") + obstacle +
+                         " cannot be used with a view; leave one of them out");
+    return false;
+  }
+  clock.begin("view");
+  LeftOut left_out;
+  const std::vector<Index> inputs = usableInputs(points, info, left_out);
+  if (inputs.size() < 4)
+    return false;  // refused there
+  const OrderedPoints nodes =
+      orderCheckedPoints(Positions(points(Eigen::all, inputs)), options.threads);
+  std::optional<FoundView> view = viewOf(nodes, options, info, clock.execution());
+  if (!view)
+    return false;
+  clock.begin("optimization");
+  clock.noteMesh();
+  flipInView(nodes.points, view->mesh, clock.execution(),
+             [&] { return clock.remaining() == std::optional(0.0); });
+  clock.begin("openings");
+  const bool is_grid = view->source == ViewSource::Above && isElevationGrid(nodes.points);
+  const Positions flat = is_grid ? withoutHeights(nodes.points) : Positions();
+  const Positions& measured = is_grid ? flat : nodes.points;
+  OpenMesh open = openJumps(measured, spacingOf(measured, clock.execution()), view->mesh,
+                            static_cast<std::size_t>(options.min_points));
+  const std::vector<Gap> filled =
+      fillGaps(nodes.points, view->mesh, static_cast<std::size_t>(options.fill_holes),
+               std::ldexp(options.fill_holes_area, -2 * nodes.exponent), open);
+  clock.begin("quality");
+  result.surfaces =
+      SurfaceMaker(nodes, view->mesh, open, options).run(points, inputs, filled, left_out);
+  if (result.surfaces.empty())
+    throw InvalidInput(
+        "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
+        " points; give a lower min_points, or parts = all");
+  result.left_out = std::move(left_out);
+  result.view = View{timesPowerOfTwo(view->mesh.place, nodes.exponent), view->source};
+  return true;
+}
+
+std::optional<Positions> directionsOf(const Positions& nodes, int exponent,
+                                      const Options& options) {
+  return isGiven(options)
+             ? std::optional(directionsFrom(givenPlace(nodes, exponent, options), nodes))
+             : std::nullopt;
+}
+
+}  // namespace spherical_param::internal
