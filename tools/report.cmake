@@ -24,7 +24,7 @@ function(spherical_param_script_hash script result)
 endfunction()
 
 set(report_folder ${CMAKE_CURRENT_LIST_DIR}/report)
-set(report_scripts text.js first_view.js views.js main.js)
+set(report_scripts text.js first_view.js views.js still.js main.js)
 list(TRANSFORM report_scripts PREPEND ${report_folder}/)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_scripts}
   ${report_folder}/page.html ${report_folder}/style.css ${report_folder}/loader.js)

@@ -165,15 +165,22 @@ Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
   return json;
 }
 
+/// The report on all that was made.
+Json report(const Settings& settings, const CloudReconstruction& cloud) {
+  const bool is_list =
+      cloud.result.surfaces.size() > 1 || settings.reconstruction.options.parts == PartsMode::Each;
+  return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
+}
+
 /// The names of the files that are written, and what is not in them.
 std::vector<std::string> writtenFiles(const Settings& settings, const CloudReconstruction& cloud) {
   const std::size_t surfaces = cloud.result.surfaces.size();
   std::vector<std::string> files;
   for (const std::string& name : outputsOf(settings)) {
-    const bool is_view = name != settings.output && name != settings.report.json;
+    const bool is_largest = name == settings.sphere && surfaces > 1;
     files.push_back(isNumbered(name) && surfaces > 1
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
-                        : numbered(name, 0) + (is_view && surfaces > 1 ? " (the largest)" : ""));
+                        : numbered(name, 0) + (is_largest ? " (the largest)" : ""));
   }
   files.front() += notWritten(!cloud.data->colors.empty(), settings.output, cloud.offset);
   return files;
@@ -228,40 +235,41 @@ void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction&
   cloud.stages.push_back(run.console.end());
 }
 
-/// Writes the sphere and the page of a surface, where they are wanted.
-void writeViews(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
-                ToolRun& run) {
-  if (!settings.sphere.empty()) {
-    run.write(settings.sphere, sphereOf(cloud, surface, surface.sphere));
-  }
-  if (!settings.page.empty()) {
-    run.console.begin("report");
-    OutputFile& file = run.open(settings.page);
-    writeHtmlReport(file, {toolText().name, settings.command, report(settings, cloud, surface),
-                           &cloud, &surface, settings.reconstruction.options.threads});
-    file.finish();
-    cloud.stages.push_back(run.console.end());
-  }
+/// Writes the page of a surface, of all if it is null.
+void writePage(const Settings& settings, CloudReconstruction& cloud, const Surface* surface,
+               ToolRun& run) {
+  run.console.begin("report");
+  OutputFile& file = run.open(settings.page);
+  writeHtmlReport(file, {toolText().name, settings.command,
+                         surface ? report(settings, cloud, *surface) : report(settings, cloud),
+                         &cloud, surface, settings.reconstruction.options.threads});
+  file.finish();
+  cloud.stages.push_back(run.console.end());
 }
 
-/// Several surfaces go to one file, with the views of the largest, or to numbered files.
+/// Several surfaces go to one file and page, or to numbered files. A sphere without a number is of
+/// the largest.
 void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& run) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
-  if (!isNumbered(settings.output)) {
+  const bool is_numbered = isNumbered(settings.output);
+  if (!is_numbered) {
     writeMeshFile(settings, JoinedMesh(cloud).view(), cloud, run);
-    writeViews(settings, cloud, surfaces.front(), run);
-    return;
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    Settings of_part = settingsOf(settings, i);
-    checkOutputs({settings.input}, outputsOf(of_part));
-    writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, run);
-    // Those without a number are of the largest.
-    for (std::string* view : {&of_part.sphere, &of_part.page}) {
-      const bool is_numbered = isNumbered(view == &of_part.page ? settings.page : settings.sphere);
-      *view = i == 0 || is_numbered ? *view : "";
+    const Settings of_part = settingsOf(settings, i);
+    if (is_numbered) {
+      checkOutputs({settings.input}, outputsOf(of_part));
+      writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, run);
     }
-    writeViews(of_part, cloud, surfaces[i], run);
+    if (!settings.sphere.empty() && (i == 0 || isNumbered(settings.sphere))) {
+      run.write(of_part.sphere, sphereOf(cloud, surfaces[i], surfaces[i].sphere));
+    }
+    if (isNumbered(settings.page)) {
+      writePage(of_part, cloud, &surfaces[i], run);
+    }
+  }
+  if (!settings.page.empty() && !isNumbered(settings.page)) {
+    writePage(settings, cloud, nullptr, run);
   }
 }
 
@@ -277,13 +285,7 @@ void run(const CommandLine& command_line, Settings& settings) {
     requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
   }
   writeFiles(settings, cloud, run);
-  run.publish(
-      [&] {
-        const bool is_list = cloud.result.surfaces.size() > 1 ||
-                             settings.reconstruction.options.parts == PartsMode::Each;
-        return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
-      },
-      summaryOf(settings, cloud, run.console));
+  run.publish([&] { return report(settings, cloud); }, summaryOf(settings, cloud, run.console));
   for (const std::string& failure : cloud.result.failures) {
     run.addFailure(failure);
   }

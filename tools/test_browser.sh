@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/common/test_steps.sh
 
 # A sound mesh of a file whose name tries to be HTML, a cloud with an opening and outliers, what a
-# depth camera at the origin sees of a ball, and a mesh with handles.
+# depth camera at the origin sees of a ball, a mesh with handles, and two surfaces.
 make_reports() {
   local tool="$PWD/build/release/bin/pcl_spherical_param" evil='a<img src=x onerror=document.title=1>.ply'
   (
@@ -20,7 +20,9 @@ make_reports() {
       awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz >seen.xyz &&
       "${tool}_reconstruction" seen.xyz mesh.ply -report camera.html &&
       "${tool}_scan" double_torus double.xyz -points 3000 &&
-      "${tool}_reconstruction" double.xyz mesh.ply -report handles.html
+      "${tool}_reconstruction" double.xyz mesh.ply -report handles.html &&
+      "${tool}_scan" pair pair.xyz -points 3000 &&
+      "${tool}_reconstruction" pair.xyz mesh.ply -report pair.html
   )
 }
 
@@ -32,7 +34,7 @@ if check "tools: build" build_release pcl_spherical_param_scan \
   pcl_spherical_param_reconstruction && check "reports" make_reports; then
   check "reports in Chromium" timeout 900 /usr/bin/python3 test/browser/test_report_page.py \
     "$work/sound.html" "$work/open.html" "$work/camera.html" "$work/handles.html" \
-    "$logs/browser" || true
+    "$work/pair.html" "$logs/browser" || true
 fi
 
 finish

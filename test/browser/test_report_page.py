@@ -1,26 +1,37 @@
 #!/usr/bin/python3
-"""Reports of the tool in Chromium: test_report_page.py SOUND OPEN CAMERA HANDLES FOLDER
+"""Reports of the tool in Chromium: test_report_page.py SOUND OPEN CAMERA HANDLES PAIR FOLDER
 
 SOUND is the report of a sound mesh whose input has a name that tries to be HTML, OPEN that of a cloud with an opening
-and outliers, CAMERA that of the open mesh of what a depth camera saw of a ball, HANDLES that of a double torus. FOLDER
-gets the pictures.
+and outliers, CAMERA that of the open mesh of what a depth camera saw of a ball, HANDLES that of a double torus, PAIR
+that of two surfaces. FOLDER gets the pictures.
 """
 
+import base64
 import json
 import pathlib
+import re
 import sys
 import unittest
+import zlib
 
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-SOUND, OPEN, CAMERA, HANDLES, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:6])
+SOUND, OPEN, CAMERA, HANDLES, PAIR, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:7])
 VIEWS = ("mesh", "cloud", "sphere")
 
-# Of each view a hash of its pixels, how many colours it has and the part that is not background.
-PICTURES = """
+# Of an image a hash of its pixels, how many colours it has and the part that is not background.
+PICTURE = """
+    const picture = ({data}) => {
+      const pixels = new Uint32Array(data.buffer);
+      return { hash: pixels.reduce((hash, x) => (Math.imul(hash, 31) + x) | 0, 7), colors: new Set(pixels).size,
+               covered: pixels.filter((pixel) => pixel !== 0).length / pixels.length };
+    };"""
+
+# The same of each view.
+PICTURES = PICTURE + """
     report_views.draw();
     const canvas = report_views.canvas;
     const copy = document.createElement('canvas');
@@ -30,10 +41,7 @@ PICTURES = """
     const all = canvas.getBoundingClientRect();
     return Object.fromEntries(arguments[0].map((name) => {
       const r = document.getElementById('view-' + name).getBoundingClientRect();
-      const image = context.getImageData(r.left - all.left, r.top - all.top, r.width, r.height);
-      const pixels = new Uint32Array(image.data.buffer);
-      return [name, { hash: pixels.reduce((hash, x) => (Math.imul(hash, 31) + x) | 0, 7), colors: new Set(pixels).size,
-                      covered: pixels.filter((pixel) => pixel !== 0).length / pixels.length }];
+      return [name, picture(context.getImageData(r.left - all.left, r.top - all.top, r.width, r.height))];
     }));"""
 
 # The view of the mesh after a change of its points and of where the input's origin is, and the area of its triangles
@@ -54,6 +62,24 @@ FIRST_VIEW = """
       facing += b.sub(a).cross(c.sub(a)).dot(view.toward);
     }
     return [view.up.toArray(), view.toward.toArray(), facing];"""
+
+
+# How far the points of the mesh reach to the edges of the view, 1 at most.
+REACH = """
+    report_views.draw();
+    report_views.aimView('mesh');
+    const {positions, camera} = report_views;
+    return Array.from({length: positions.length / 3}, (_, v) => report_views.vector(v).project(camera))
+      .reduce((most, {x, y}) => Math.max(most, Math.abs(x), Math.abs(y)), 0);"""
+
+
+def seen_from(page, place):
+    """A copy of a page with the place of a sensor."""
+    before, data, after = re.split('(?<=id="data">)([^<]*)', page.read_text())
+    data = {**json.loads(zlib.decompress(base64.b64decode(data))), "view": place}
+    copy = FOLDER / "seen.html"
+    copy.write_text(before + base64.b64encode(zlib.compress(json.dumps(data).encode())).decode() + after)
+    return copy
 
 
 class Browser(webdriver.Chrome):
@@ -164,7 +190,8 @@ class ReportPage(unittest.TestCase):
         self.assertIn("stray point", self.text("cloud-note"))
 
     def test_each_view_shows_its_object(self):
-        for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera")):
+        for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera"),
+                           (seen_from(CAMERA, [0, 0, 0]), "seen")):  # fmt: skip
             self.open(page)
             pictures = self.pictures()
             self.check_pictures(pictures)
@@ -213,6 +240,39 @@ class ReportPage(unittest.TestCase):
                          [1, 0, 0, 0, 0, -1, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, -1, 0]):  # fmt: skip
                 _, _, facing = self.run_script(FIRST_VIEW, rows, flip, False)
                 self.assertGreater(facing, 0, (rows, flip))
+
+    def test_opens_as_the_sensor_sees_it(self):
+        distances = ("const {camera, origin} = report_views;"
+                     "return [camera.position.length(), origin.length(), start_distance]")  # fmt: skip
+        for name, page, place, up, toward in (
+                ("ahead", CAMERA, [0, 0, 0], [0, -1, 0], (0, 0, -1)),
+                ("down", SOUND, [0, 0, 100], [0, 1, 0], (0, 0, 1)),
+                ("level", SOUND, [100, 0, 0], [0, 0, 1], (1, 0, 0))):  # fmt: skip
+            self.open(seen_from(page, place))
+            for _ in range(2):
+                self.assertEqual(self.camera()[0], up)
+                self.assert_near(self.camera()[1], toward)
+                distance, of_sensor, most = self.run_script(distances)
+                self.assertAlmostEqual(distance, of_sensor if page == CAMERA else most, delta=1e-3)
+                self.assertAlmostEqual(self.run_script(REACH), 1 / 1.04, delta=0.001)
+                self.run_script("report_views.lookAt(0)")
+                self.element("reset").click()
+            self.save(f"seen_{name}")
+
+    def test_several_surfaces_are_shown_together(self):
+        self.open(PAIR)
+        self.assertIn("2 surfaces:", self.text("tool"))
+        self.assertEqual(self.text("size"), "3,000 vertices, 5,992 triangles")
+        self.assertIn("2 surfaces together", self.text("shown"))
+        self.assertIn("Triangles 5,992", self.text("numbers"))
+        self.check_findings("Closed", "Manifold", "Oriented", "No self-intersections")
+        self.assertEqual(2, self.run_script(
+            "const {triangles} = report_views;"
+            "return findFlags(new Uint8Array(triangles.length / 3).fill(1), triangles)[0].places.length"))
+        for name in ("view-sphere", "unfolding", "residual-card"):
+            self.assertFalse(self.element(name).is_displayed(), name)
+        self.check_pictures(self.pictures(VIEWS[:2]))
+        self.save("pair")
 
     def test_opens_with_the_faults_if_there_are_any(self):
         for page, mode in ((SOUND, "place"), (OPEN, "suspicious")):
@@ -327,15 +387,20 @@ class ReportPage(unittest.TestCase):
 
     def test_browsers_that_cannot_draw_or_inflate_say_so(self):
         for options, script, state, place, words in (
-                (("--disable-gpu", "--disable-3d-apis"), "", "text", "note", "need WebGL"),
+                (("--disable-gpu", "--disable-3d-apis"), "", "still", "still", "no WebGL, so this is a still picture"),
                 ((), "delete window.DecompressionStream", "failed", "problems", "too old for this page")):
             browser = Browser(*options)
             self.addCleanup(browser.quit)
             browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
             self.assertEqual(browser.open(SOUND), state)
             self.assertIn(words, browser.find_element(By.ID, place).text)
-            if state == "text":  # all else is shown
+            if state == "still":  # all else is shown
                 self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh.")
+                self.assertFalse(browser.find_element(By.ID, "show").is_displayed())
+                browser.save_screenshot(str(FOLDER / "still.png"))
+                self.check_pictures({"still": browser.execute_script(PICTURE + '''
+                    const canvas = document.querySelector('#still canvas');
+                    return picture(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height));''')})
 
 
 if __name__ == "__main__":

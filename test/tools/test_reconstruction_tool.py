@@ -367,7 +367,7 @@ class PartsOption(ToolTest):
         run("reconstruction", "three.xyz", "open.ply")
         self.assertEqual(len(Mesh("open.ply").points), 560)
 
-    def test_one_sphere_and_one_page_are_those_of_the_largest(self):
+    def test_one_sphere_is_that_of_the_largest(self):
         for output in ("out.ply", "out_%03d.ply"):
             said = run("reconstruction", "two.xyz", output, "-sphere", "s.ply", "-json", "r.json")
             self.assertIn("s.ply (the largest)", said)

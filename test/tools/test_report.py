@@ -131,6 +131,26 @@ class Report(ToolTest):
             mesh = Page(f"page_00{number - 1}.html").data["mesh"]
             self.assertEqual([mesh["surface"], mesh["surfaces"]], [number, 2])
 
+    def test_one_page_has_all_surfaces_with_their_marks(self):
+        run("scan", "bowl", "bowl.xyz", "-points", 2000)
+        bowl = np.loadtxt("bowl.xyz")
+        np.savetxt("two.xyz", np.concatenate([bowl, bowl + [5, 0, 0]]))
+        run("reconstruction", "two.xyz", "out.ply", *SPHERE, "-parts", "each", "-report", "page.html", "-quiet",
+            "-json", "report.json")  # fmt: skip
+        page = Page()
+        self.assertEqual([page.data["mesh"]["shown_surfaces"], page.data["frames"]], [2, []])
+        self.assertEqual(set(page.integers), {"positions", "triangles", "suspicious"})
+        points, _, triangles = read_ply("out.ply")
+        order = nearest(page.arrays["positions"], points)
+        self.assertEqual(*({tuple(np.roll(row, -row.argmin())) for row in rows}
+                           for rows in (order[page.integers["triangles"]], triangles)))  # fmt: skip
+        holes = page.integers["triangles"][page.integers["suspicious"][:, 0] & 2 != 0]
+        corners = page.arrays["positions"][holes]
+        self.assertGreater(corners[..., 2].min(), 0)  # at the top
+        right = (corners[..., 0] > 2.5).all(axis=1)
+        self.assertTrue(10 < right.sum() < len(holes) - 10)
+        self.assertEqual(page.data["report"]["parts"], read_json("report.json")["parts"])
+
     def test_smoothed_points_outliers_and_colours_are_shown(self):
         run("scan", "head", "scan.xyz", "-points", 1500)
         far = [(x, 0.1 * i, -2) for i, x in enumerate((0.9, 3, 3, 3, 3, 3))]

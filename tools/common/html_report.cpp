@@ -166,6 +166,8 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.add("suspicious", 1, mesh.marks);
   if (mesh.sphere.cols() > 0) {
     arrays.addPoints("sphere", mesh.sphere, unit_box);
+  }
+  if (mesh.area_distortion.size() > 0) {
     arrays.addArea(mesh.area_distortion);
     arrays.addShades("angle", mesh.angle_distortion.log10());
     arrays.addShades("residual", mesh.residual);
@@ -173,16 +175,21 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
 }
 
 /// Adds the loops of the handles, one after the other, and returns what each of them is.
-Json addHandles(const CloudReconstruction& cloud, const Surface& surface, const ReportMesh& mesh,
-                Arrays& arrays) {
+Json addHandles(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
+                const ReportMesh& mesh, Arrays& arrays) {
   Json handles = Json::array();
-  std::vector<Index> vertices;
-  for (const HandleLoop& handle : surface.handles) {
-    vertices.insert(vertices.end(), handle.loop.begin(), handle.loop.end());
-    handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
+  std::vector<double> loops;
+  for (const Surface* surface : surfaces) {
+    const Positions positions = vertexPositions(cloud, *surface);
+    for (const HandleLoop& handle : surface->handles) {
+      const Positions loop = positions(Eigen::all, handle.loop);
+      loops.insert(loops.end(), loop.data(), loop.data() + loop.size());
+      handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
+    }
   }
-  if (!vertices.empty()) {
-    arrays.addPoints("handles", vertexPositions(cloud, surface)(Eigen::all, vertices),
+  if (!loops.empty()) {
+    const auto count = static_cast<Eigen::Index>(loops.size() / 3);
+    arrays.addPoints("handles", Eigen::Map<const Positions>(loops.data(), 3, count),
                      boxOf(mesh.positions));
   }
   return handles;
@@ -199,22 +206,18 @@ Json sphereTurn(const ReportMesh& mesh) {
 }
 
 /// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
-void addCloud(const CloudReconstruction& cloud, const Surface& surface, const ReportMesh& mesh,
+void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh& mesh,
               Arrays& arrays) {
-  std::vector<Index> inputs;  // of the vertices
-  for (const Index vertex : mesh.vertices) {
-    inputs.push_back(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
-  }
   if (!cloud.data->colors.empty()) {
     std::vector<std::uint8_t> colors;
-    for (const Index input : inputs) {
+    for (const Index input : mesh.inputs) {
       const Color& color = cloud.data->colors[static_cast<std::size_t>(input)];
       colors.insert(colors.end(), color.begin(), color.begin() + 3);
     }
     arrays.add("colors", 3, colors);
   }
-  if (surface.moved().cols() != 0) {
-    const Positions points = positionsOf(*cloud.data)(Eigen::all, inputs);
+  if (has_moved) {
+    const Positions points = positionsOf(*cloud.data)(Eigen::all, mesh.inputs);
     arrays.addPoints("cloud", points, boxOf(points));
   }
   const std::vector<Index>& left_out = cloud.result.left_out.outliers;
@@ -326,29 +329,50 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   const std::string_view page = reportPage();
   const std::size_t place = page.find(marker);
   const CloudReconstruction& cloud = *input.cloud;
-  const Surface& surface = *input.surface;
-  const ReportMesh mesh = reportMesh(cloud, surface, input.threads);
+  std::vector<const Surface*> surfaces;
+  std::size_t vertices = 0;
+  Eigen::Index triangles = 0;
+  double edge_lengths = 0.0;
+  bool has_moved = false;
+  for (const Surface& surface : cloud.result.surfaces) {
+    if (input.surface == nullptr || input.surface == &surface) {
+      surfaces.push_back(&surface);
+      vertices += surface.vertexCount();
+      triangles += surface.triangles.cols();
+      edge_lengths +=
+          surface.measures.mean_edge_length * static_cast<double>(surface.vertexCount());
+      has_moved = has_moved || surface.moved().cols() > 0;
+    }
+  }
+  const ReportMesh mesh = reportMesh(cloud, surfaces, input.threads);
   Arrays arrays;
   addMesh(mesh, arrays);
-  addCloud(cloud, surface, mesh, arrays);
+  addCloud(cloud, has_moved, mesh, arrays);
   Json json;
   json["tool"] = {{"name", input.tool}, {"version", SPHERICAL_PARAM_VERSION}};
   json["command"] = input.command;
   json["report"] = input.report;
-  json["mesh"] = {{"vertices", surface.vertexCount()},
-                  {"triangles", surface.triangles.cols()},
+  json["mesh"] = {{"vertices", vertices},
+                  {"triangles", triangles},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()},
-                  {"surface", &surface - cloud.result.surfaces.data() + 1},
+                  {"surface", surfaces.front() - cloud.result.surfaces.data() + 1},
+                  {"shown_surfaces", surfaces.size()},
                   {"surfaces", cloud.result.surfaces.size()}};
   // Where only some vertices are shown, they are farther from each other.
+  const auto count = static_cast<double>(vertices);
   json["spacing"] =
-      surface.measures.mean_edge_length * std::sqrt(static_cast<double>(surface.vertexCount()) /
-                                                    static_cast<double>(mesh.positions.cols()));
+      edge_lengths / count * std::sqrt(count / static_cast<double>(mesh.positions.cols()));
+  json["view"] = nullptr;
+  if (cloud.result.view) {
+    const Eigen::Vector3d& sensor = cloud.result.view->place;
+    json["view"] = std::vector<double>(sensor.begin(), sensor.end());
+  }
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = sphereTurn(mesh);
-  json["handles"] = addHandles(cloud, surface, mesh, arrays);
-  json["frames"] = addHistory(cloud, surface, arrays);
+  json["handles"] = addHandles(cloud, surfaces, mesh, arrays);
+  json["frames"] =
+      surfaces.size() == 1 ? addHistory(cloud, *surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));

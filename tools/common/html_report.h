@@ -31,7 +31,7 @@ struct HtmlReportInput {
   std::string command;                         ///< \see repeatedCommand
   Json report;                                 ///< of -json
   const CloudReconstruction* cloud = nullptr;  ///< made after keepForHtmlReport()
-  const Surface* surface = nullptr;            ///< one of `cloud`, to be shown
+  const Surface* surface = nullptr;            ///< one of `cloud`, to be shown; null: all
   int threads = 0;
 };
 

@@ -14,7 +14,7 @@
 namespace spherical_param::tools {
 namespace {
 
-std::size_t at(Index i) {
+std::size_t at(Eigen::Index i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -89,10 +89,13 @@ std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
   return marks;
 }
 
-/// Leaves of the mesh's vertices those of suspicious triangles, if these are few, and others evenly
-/// in their order. A triangle of the new mesh between three of the former is suspicious as well.
-void reduce(std::size_t max_vertices, ReportMesh& mesh) {
-  std::vector<std::uint8_t> marks_around(mesh.vertices.size(), 0);
+/// A mark of vertices, beside the bits of triangle_mark.
+constexpr std::uint8_t at_boundary = 128;
+
+/// Leaves of the mesh's vertices the marked ones and those of suspicious triangles, if these are
+/// few, and others evenly in their order. A triangle of the new mesh between three of suspicious
+/// triangles is suspicious as well; one between three at the boundary is over an opening.
+void reduce(std::size_t max_vertices, std::vector<std::uint8_t> marks_around, ReportMesh& mesh) {
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     for (const Index v : mesh.triangles.col(t)) {
       marks_around[at(v)] |= mesh.marks[at(t)];
@@ -100,13 +103,13 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
   }
   auto others = static_cast<std::size_t>(
       std::count(marks_around.begin(), marks_around.end(), std::uint8_t{0}));
-  const std::size_t marked = mesh.vertices.size() - others;
+  const std::size_t marked = marks_around.size() - others;
   const bool keeps_marked = 2 * marked <= max_vertices;
-  others = keeps_marked ? others : mesh.vertices.size();
+  others = keeps_marked ? others : marks_around.size();
   const std::size_t room = keeps_marked ? max_vertices - marked : max_vertices;
   std::vector<Index> kept;
   std::size_t seen = 0;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+  for (std::size_t v = 0; v < marks_around.size(); ++v) {
     const bool is_other = !keeps_marked || marks_around[v] == 0;
     // Bresenham's line: `room` of the others at equal distances.
     if (!is_other || (seen + 1) * room / others != seen * room / others) {
@@ -115,9 +118,9 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
     seen += is_other ? 1 : 0;
   }
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    mesh.vertices[i] = mesh.vertices[at(kept[i])];
+    mesh.inputs[i] = mesh.inputs[at(kept[i])];
   }
-  mesh.vertices.resize(kept.size());
+  mesh.inputs.resize(kept.size());
   mesh.positions = mesh.positions(Eigen::all, kept).eval();
   mesh.sphere = mesh.sphere(Eigen::all, kept).eval();
   for (Eigen::ArrayXd* values : {&mesh.area_distortion, &mesh.angle_distortion, &mesh.residual}) {
@@ -125,10 +128,16 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
   }
   mesh.triangles = triangulateSphere(mesh.sphere);
   mesh.marks.clear();
+  Index shown = 0;
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     const auto mark = [&](Index k) { return marks_around[at(kept[at(mesh.triangles(k, t))])]; };
-    mesh.marks.push_back(static_cast<std::uint8_t>(mark(0) & mark(1) & mark(2)));
+    const auto marks = static_cast<std::uint8_t>(mark(0) & mark(1) & mark(2));
+    if ((marks & at_boundary) == 0) {
+      mesh.marks.push_back(marks);
+      mesh.triangles.col(shown++) = mesh.triangles.col(t).eval();
+    }
   }
+  mesh.triangles.conservativeResize(3, shown);
 }
 
 /// Sorts the triangles by their vertices, each from its least vertex on.
@@ -148,30 +157,78 @@ void sortTriangles(ReportMesh& mesh) {
   }
 }
 
-}  // namespace
-
-ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result, int threads) {
+ReportMesh meshOfSurface(const CloudReconstruction& cloud, const Surface& result, int threads,
+                         std::size_t max_triangles) {
   const bool has_sphere = result.sphere.cols() > 0;
   const Positions positions = vertexPositions(cloud, result);
   ReportMesh mesh;
-  mesh.vertices = internal::mortonOrder(has_sphere ? result.sphere : positions);
-  mesh.positions = positions(Eigen::all, mesh.vertices);
-  std::vector<Index> place_of(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    place_of[at(mesh.vertices[i])] = static_cast<Index>(i);
+  const std::vector<Index> vertices = internal::mortonOrder(has_sphere ? result.sphere : positions);
+  mesh.positions = positions(Eigen::all, vertices);
+  std::vector<Index> place_of(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    place_of[at(vertices[i])] = static_cast<Index>(i);
+    mesh.inputs.push_back(result.input_of_vertex[at(vertices[i])]);
   }
   mesh.triangles = result.triangles.unaryExpr([&place_of](Index v) { return place_of[at(v)]; });
   mesh.marks = marksOf(result, threads);
   if (has_sphere) {
-    mesh.sphere = result.sphere(Eigen::all, mesh.vertices);
-    mesh.residual = residualExponents(result)(mesh.vertices);
+    mesh.sphere = result.sphere(Eigen::all, vertices);
+    mesh.residual = residualExponents(result)(vertices);
     measureDistortion(mesh);
-    if (static_cast<std::size_t>(mesh.triangles.cols()) > kMaxReportTriangles) {
-      reduce(kMaxReportTriangles / 2 + 2, mesh);
+    const std::size_t max_vertices = std::max<std::size_t>(max_triangles / 2 + 2, 4);
+    if (at(mesh.triangles.cols()) > max_triangles && vertices.size() > max_vertices) {
+      std::vector<std::uint8_t> marks(vertices.size(), 0);
+      for (const std::vector<Index>& loop : result.boundary)
+        for (const Index v : loop)
+          marks[at(place_of[at(v)])] = at_boundary;
+      reduce(max_vertices, std::move(marks), mesh);
     }
   }
   sortTriangles(mesh);
   return mesh;
+}
+
+}  // namespace
+
+ReportMesh reportMesh(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
+                      int threads, std::size_t max_triangles) {
+  std::size_t whole = 0;    // triangles of surfaces without a sphere
+  std::size_t reduced = 0;  // of the others
+  for (const Surface* surface : surfaces) {
+    (surface->sphere.cols() > 0 ? reduced : whole) += at(surface->triangles.cols());
+  }
+  const std::size_t room = std::min(max_triangles - std::min(max_triangles, whole), reduced);
+  std::vector<ReportMesh> meshes;
+  ReportMesh all;
+  bool has_sphere = cloud.result.view.has_value();
+  Index vertices = 0;
+  for (const Surface* surface : surfaces) {
+    const std::size_t fraction =
+        at(surface->triangles.cols()) * room / std::max<std::size_t>(reduced, 1);
+    meshes.push_back(meshOfSurface(cloud, *surface, threads, fraction));
+    has_sphere = has_sphere && surface->sphere.cols() > 0;
+    vertices += static_cast<Index>(meshes.back().positions.cols());
+    all.marks.insert(all.marks.end(), meshes.back().marks.begin(), meshes.back().marks.end());
+    all.inputs.insert(all.inputs.end(), meshes.back().inputs.begin(), meshes.back().inputs.end());
+  }
+  if (meshes.size() == 1) {
+    return std::move(meshes.front());
+  }
+  all.positions.resize(3, vertices);
+  all.sphere.resize(3, has_sphere ? vertices : 0);
+  all.triangles.resize(3, static_cast<Eigen::Index>(all.marks.size()));
+  Index vertex = 0;
+  Eigen::Index triangle = 0;
+  for (const ReportMesh& mesh : meshes) {
+    all.positions.middleCols(vertex, mesh.positions.cols()) = mesh.positions;
+    if (has_sphere) {
+      all.sphere.middleCols(vertex, mesh.sphere.cols()) = mesh.sphere;
+    }
+    all.triangles.middleCols(triangle, mesh.triangles.cols()) = mesh.triangles.array() + vertex;
+    vertex += static_cast<Index>(mesh.positions.cols());
+    triangle += mesh.triangles.cols();
+  }
+  return all;
 }
 
 }  // namespace spherical_param::tools

@@ -1,4 +1,9 @@
-// Where the page looks from at first. Points are rows of three numbers.
+// What the page shows, and where it looks from at first. Points are rows of three numbers.
+
+const field_of_view = 28; // degrees
+// A ball of radius 1 fits.
+const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
+const widest_angle = (50 * Math.PI) / 180; // from the axis of the camera
 
 /** Triangles' centers, and their normals as long as their areas; of many triangles, some 20,000. */
 function sampledTriangles(points, triangles, marks) {
@@ -83,4 +88,62 @@ function firstView(points, triangles, marks, eye, closed) {
   const most = Math.max(...views.map(({ area }) => area));
   const good = views.filter(({ area }) => area >= 0.9 * most);
   return { up, toward: good.reduce((best, view) => (view.off < best.off ? view : best)).toward };
+}
+
+/** The view of a sensor at `eye`, of what is around 0. Up is z, unless the sensor looks about along it. */
+function sensorView(eye) {
+  const toward = (eye.lengthSq() > 0 ? eye.clone() : new THREE.Vector3(0, -1, 0)).normalize();
+  const up = Math.abs(toward.z) < 0.8 ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0, Math.sign(toward.z), 0);
+  return { up, toward };
+}
+
+/** The object with its middle at 0 and the corners of its box at distance 1, and a camera at its first place. */
+class Shape {
+  constructor(arrays, { view, report }) {
+    const { low, high } = arrays.positions;
+    const center = low.map((x, c) => (x + high[c]) / 2);
+    const radius = Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) || 1;
+    const normalized = (rows) => rows.map((x, i) => (x - center[i % 3]) / radius);
+    this.normalized = (array) => normalized(array.numbers());
+    this.radius = radius;
+    this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
+    this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
+    this.positions = this.normalized(arrays.positions);
+    this.sphere = arrays.sphere?.numbers();
+    this.triangles = arrays.triangles.values;
+    const eye = view && new THREE.Vector3(...normalized(view));
+    const { up, toward } = view ? sensorView(eye) : firstView(this.positions, this.triangles,
+      arrays.suspicious.values, this.origin, partsOf(report).every((part) => part.closed));
+    this.start = toward.multiplyScalar(view ? Math.min(Math.max(eye.length(), 0.02), start_distance) : start_distance);
+    this.camera = new THREE.PerspectiveCamera(field_of_view, 1, 0.01, 50);
+    this.camera.up.copy(up);
+    this.camera.position.copy(this.start);
+    this.camera.lookAt(0, 0, 0);
+    this.camera.updateMatrixWorld();
+    /** How far what is shown reaches to the sides and upwards from the camera's axis, over its depth. */
+    this.ball_slopes = [0, Math.tan(Math.min(Math.asin(Math.min(1.04 / this.start.length(), 1)), widest_angle))];
+    this.slopes = view ? this.slopesOfPoints() : this.ball_slopes;
+  }
+
+  slopesOfPoints() {
+    const widest = Math.tan(widest_angle);
+    const slopes = [0.01, 0.01];
+    for (let i = 0; i < this.positions.length; i += 3) {
+      const { x, y, z } = new THREE.Vector3().fromArray(this.positions, i).applyMatrix4(this.camera.matrixWorldInverse);
+      [x, y].forEach((side, k) => {
+        const slope = z < 0 ? (1.04 * Math.abs(side)) / -z : widest;
+        slopes[k] = Math.min(Math.max(slopes[k], slope), widest);
+      });
+    }
+    return slopes;
+  }
+
+  /** Gives the camera the shape of an element, and a field of view that shows all at first: its rectangle. */
+  aim(element, [across, up] = this.slopes) {
+    const rect = element.getBoundingClientRect();
+    this.camera.aspect = rect.width / rect.height;
+    this.camera.fov = (360 / Math.PI) * Math.atan(Math.max(up, across / this.camera.aspect));
+    this.camera.updateProjectionMatrix();
+    return rect;
+  }
 }

@@ -60,11 +60,13 @@ function makeModes(arrays, views) {
     array, ramp, ...more,
   });
   const uniform = (level) => () => new Uint8Array(views.positions.length).fill(level);
-  const of_sphere = arrays.sphere && {
+  const place = arrays.sphere && {
     place: {
       name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]), cells: true,
       about: 'The same colour and the same cell of 15° mean the same place on the sphere.',
     },
+  };
+  const of_map = arrays.area && {
     area: scalar(arrays.area, diverging, {
       name: 'area distortion', about: 'Area on the sphere over area on the object, 1 on average.',
       // Each side of 1 has half of the colours.
@@ -81,7 +83,8 @@ function makeModes(arrays, views) {
     }),
   };
   return {
-    ...of_sphere,
+    ...place,
+    ...of_map,
     suspicious: {
       name: 'suspicious triangles', colors: uniform(190),
       about: 'Triangles to look at, each kind in its colour. The buttons below lead to them.',
@@ -132,6 +135,20 @@ function findFlags(marks, triangles) {
 
 /** The way to colour by at first: faults are not to be overlooked. */
 const firstMode = (kinds) => (kinds.every((kind) => kind.harmless) ? 'place' : 'suspicious');
+
+function showStill(data, arrays) {
+  const shape = new Shape(arrays, data);
+  const modes = makeModes(arrays, shape);
+  const kinds = findFlags(arrays.suspicious.values, shape.triangles);
+  const colors = (modes[firstMode(kinds)] ?? modes.plain).colors();
+  const flagged = new Map(kinds.reverse().filter((kind) => !kind.harmless).flatMap(({ color, triangles }) => {
+    const { r, g, b } = new THREE.Color(color);
+    return triangles.map((t) => [t, [255 * r, 255 * g, 255 * b]]);
+  }));
+  byId('still').hidden = false;
+  drawStill(byId('still').firstElementChild, shape, (t) =>
+    flagged.get(t) ?? colors.subarray(3 * shape.triangles[3 * t], 3 * shape.triangles[3 * t] + 3));
+}
 
 /** A button that leads to one place after the other. */
 function tour(attributes, color, text, places, lookAt) {
@@ -269,26 +286,29 @@ async function main() {
   showVerdict(data);
   showTables(data);
   showStages(data.report.stages ?? []);
-  const residuals = data.report.embedding?.residuals ?? [];
+  const [{ embedding }, ...others] = partsOf(data.report);
+  const residuals = (others.length === 0 && embedding?.residuals) || [];
   showCurve(residuals, 'iteration', () => {});
   byId('content').hidden = false;
 
   const note = (text) => Object.assign(byId('note'), { hidden: false, textContent: text });
+  if (data.mesh.shown_surfaces > 1) {
+    byId('shown').textContent = `The page shows ${number(data.mesh.shown_surfaces)} surfaces together. ` +
+      (data.arrays.sphere ? 'The sphere has the directions in which the sensor sees them.'
+        : 'They have no sphere in common: mesh_%03d.ply -report page_%03d.html makes a page of each, with its sphere.');
+  }
   if (data.mesh.shown_triangles < data.mesh.triangles) {
     note(`The views show a reduced copy: ${counted(data.mesh.shown_vertices, 'vertex', 'vertices')} of the mesh, ` +
       'triangulated anew on the sphere. The numbers are those of the whole mesh.');
   }
   const context = byId('canvas').getContext('webgl2', { antialias: true });
   byId('show').hidden = !context;
-  if (context) {
-    showViews(data, await readArrays(data.arrays), context);
-  } else {
-    note('The views need WebGL 2, which this browser does not offer here: try another one, or switch on hardware ' +
-      'acceleration in its settings.');
-  }
+  const arrays = await readArrays(data.arrays);
+  if (context) showViews(data, arrays, context);
+  else showStill(data, arrays);
   byId('residual-card').hidden = byId('residual').childElementCount === 0;
   byId('loading').hidden = true;
-  document.documentElement.dataset.report = context ? 'ready' : 'text';
+  document.documentElement.dataset.report = context ? 'ready' : 'still';
 }
 
 main().catch((error) => fail(`The page failed: ${error.message ?? error}`));

@@ -34,28 +34,44 @@ function inWords(value) {
   return typeof value === 'object' ? JSON.stringify(value) : String(value);
 }
 
+/** The report of each surface. */
+const partsOf = (report) => report.parts ?? [report];
+
+/** A sum over surfaces; undefined if none has a number. */
+function total(report, numberOf) {
+  const numbers = partsOf(report).map(numberOf).filter((x) => x !== undefined && x !== null);
+  return numbers.length > 0 ? numbers.reduce((sum, x) => sum + x) : undefined;
+}
+
+const handlesOf = (part) => part.handles?.filter((handle) => !handle.is_cut).length;
+
 function showVerdict({ report, tool, mesh }) {
   const title = String(report.input ?? 'Report').split(/[/\\]/).pop();
   document.title = `Report on ${title}`;
   byId('title').textContent = title;
-  const part = mesh.surfaces > 1 ? ` surface ${mesh.surface} of ${number(mesh.surfaces)}:` : '';
+  const part = mesh.shown_surfaces > 1 ? ` ${number(mesh.shown_surfaces)} surfaces:`
+    : mesh.surfaces > 1 ? ` surface ${mesh.surface} of ${number(mesh.surfaces)}:` : '';
   byId('tool').textContent = `${tool.name} ${tool.version} ·${part}`;
   const triangles = counted(mesh.triangles, 'triangle');
   byId('size').textContent = `${counted(mesh.vertices, 'vertex', 'vertices')}, ${triangles}`;
 
-  const crossing = report.intersecting_triangles;
+  const parts = partsOf(report);
+  const crossing = total(report, (part) => part.intersecting_triangles);
   const checks = [
-    [report.manifold, 'Manifold', 'Not manifold'],
-    [report.oriented, 'Oriented', 'Not oriented'],
+    [parts.every((part) => part.manifold), 'Manifold', 'Not manifold'],
+    [parts.every((part) => part.oriented), 'Oriented', 'Not oriented'],
     [crossing === 0, 'No self-intersections',
-      `${report.intersections_are_sampled ? 'At least ' : ''}${number(crossing)} of ${triangles} intersect`],
+      `${parts.some((part) => part.intersections_are_sampled) ? 'At least ' : ''}${number(crossing)} of ${triangles} ` +
+      'intersect'],
   ];
-  const handles = (report.handles ?? []).filter((handle) => !handle.is_cut).length;
-  if (report.closed || handles > 0) {
-    checks.unshift([report.genus === handles, `Genus ${handles}`, `Genus ${report.genus}`],
-      [report.components === 1, 'One component', counted(report.components, 'component')]);
+  const closed = parts.every((part) => part.closed);
+  if (parts.length === 1 && (closed || handlesOf(parts[0]) > 0)) {
+    const [{ genus, components }] = parts;
+    const handles = handlesOf(parts[0]) ?? 0;
+    checks.unshift([genus === handles, `Genus ${handles}`, `Genus ${genus}`],
+      [components === 1, 'One component', counted(components, 'component')]);
   }
-  if (report.closed) checks.unshift([true, 'Closed', '']);
+  if (closed) checks.unshift([true, 'Closed', '']);
   const findings = report.findings ?? [];
   byId('verdict').dataset.kind = !checks.every(([good]) => good) ? 'bad'
     : findings.some((finding) => finding.is_fault) ? 'fair' : 'good';
@@ -74,27 +90,28 @@ const showPairs = (id, pairs) =>
   showTable(id, pairs.map(([name, value]) => headRow(name, make('td', {}, inWords(value)))));
 
 function showTables({ report, command }) {
-  const { embedding = {}, diagnosis, measures } = report;
+  const sum = (numberOf) => total(report, numberOf);
+  const { embedding = {}, diagnosis, measures, smoothing } = report.parts?.length > 1 ? {} : partsOf(report)[0];
   showPairs('numbers', [
     ['Points read', report.points],
     ['Points not finite', report.left_out?.not_finite?.length || undefined],
-    ['Duplicates', report.duplicates],
+    ['Duplicates', sum((part) => part.duplicates)],
     ['Stray points left out', report.left_out?.outliers?.length || undefined],
     ['Points in other parts', report.left_out?.other_parts?.length || undefined],
     ['Points that cannot be meshed', report.left_out?.unmeshed?.length || undefined],
-    ['Stray points in the mesh', report.outliers?.length || undefined],
-    ['Vertices', report.vertices],
-    ['Triangles', report.triangles],
-    ['Openings left open', report.boundary?.length || undefined],
-    ['Handles', report.handles?.filter((handle) => !handle.is_cut).length || undefined],
+    ['Stray points in the mesh', sum((part) => part.outliers?.length) || undefined],
+    ['Vertices', sum((part) => part.vertices)],
+    ['Triangles', sum((part) => part.triangles)],
+    ['Openings left open', sum((part) => part.boundary?.length) || undefined],
+    ['Handles', sum(handlesOf) || undefined],
     ['Edges outside the graph', diagnosis?.edges_outside_graph],
-    ['Volume', measures?.volume],
-    ['Area', measures?.area],
+    ['Volume', sum((part) => part.measures?.volume)],
+    ['Area', sum((part) => part.measures?.area)],
     ['Mean edge length', measures?.mean_edge_length],
     ['Size', measures?.box_max?.map((x, c) => number(x - measures.box_min[c])).join(' × ')],
     ['Residual', embedding.residual],
     ['Embedding', embedding.stop_reason === 'unfinished' ? null : embedding.stop_reason?.replaceAll('_', ' ')],
-    ['Points moved by smoothing (max)', report.smoothing?.max_displacement],
+    ['Points moved by smoothing (max)', smoothing?.max_displacement],
     ['Peak memory [bytes]', report.peak_memory_bytes],
   ].filter(([, value]) => value !== undefined && value !== null));
   showPairs('options', Object.entries(report.options ?? {}));

@@ -1,10 +1,6 @@
 // Views of one object, drawn by one WebGL context into the parts of one canvas. They share a camera, and each has
 // three.js' controls of it. A frame is drawn only when something changed.
 
-const field_of_view = 28; // degrees
-// A ball of radius 1 fits.
-const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
-
 /** Discs of a diameter in units of the object, within limits in pixels. `scale` is a uniform. */
 function discMaterial(scale, { size = 0, pixels, lit = false, color = '#ffffff', on_top = false }) {
   return new THREE.ShaderMaterial({
@@ -70,8 +66,10 @@ const rowsOf = (array) => new THREE.BufferAttribute(array, 3);
 const colorsOf = (vertices) =>
   new THREE.BufferAttribute(new Uint8Array(3 * vertices), 3, true).setUsage(THREE.DynamicDrawUsage);
 
-class Views {
-  constructor(canvas, context, arrays, { sphere_turn, spacing, report, handles }) {
+class Views extends Shape {
+  constructor(canvas, context, arrays, data) {
+    super(arrays, data);
+    const { sphere_turn, spacing, handles, view } = data;
     this.canvas = canvas;
     this.names = ['mesh', 'cloud', ...(arrays.sphere ? ['sphere'] : [])]; // meshes with handles have no sphere
     byId('view-sphere').hidden = !arrays.sphere;
@@ -79,35 +77,20 @@ class Views {
     this.renderer.setPixelRatio(devicePixelRatio);
     this.renderer.setScissorTest(true);
     this.renderer.setClearColor(0, 0);
-    this.camera = new THREE.PerspectiveCamera(field_of_view, 1, 0.01, 50);
     this.frame_at = null; // frame of the unfolding; null: the result
-    this.makeScene(arrays, spacing);
+    this.makeScene(arrays, spacing, view);
     if (arrays.sphere) {
       this.align = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().set(...sphere_turn));
     }
     if (arrays.history_frames) this.makeHistory(arrays);
     this.makeHandles(handles, arrays.handles);
-    const { up, toward } = firstView(this.positions, this.triangles, arrays.suspicious.values, this.origin,
-      report.closed);
-    this.camera.up.copy(up);
-    this.start = toward.multiplyScalar(start_distance);
     this.target = new THREE.Vector3();
     this.controls = this.names.map((name) => this.makeControls(name));
     this.reset();
     new ResizeObserver(() => this.request()).observe(canvas);
   }
 
-  makeScene(arrays, spacing) {
-    const { low, high } = arrays.positions;
-    const center = low.map((x, c) => (x + high[c]) / 2);
-    const radius = Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) || 1;
-    /** Rows of points with the object's middle at 0 and the corners of its box at distance 1. */
-    this.normalized = (array) => array.numbers().map((x, i) => (x - center[i % 3]) / radius);
-    this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
-    this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
-    this.positions = this.normalized(arrays.positions);
-    this.sphere = arrays.sphere?.numbers();
-    this.triangles = arrays.triangles.values;
+  makeScene(arrays, spacing, view) {
     this.color = colorsOf(this.positions.length / 3);
     this.cells = { value: 0 };
     this.scale = { value: 1 }; // pixels of a length of 1 at a distance of 1
@@ -128,7 +111,10 @@ class Views {
     this.normal = mesh.getAttribute('normal');
     this.surfaces = { mesh: this.addSurface('mesh', mesh) };
     if (this.sphere) {
-      const sphere = geometryOf({ position: place, normal: place, place, color: this.color }, index);
+      const sphere = geometryOf({ position: place, place, color: this.color }, index);
+      // What a sensor saw faces it, which is inwards.
+      if (view) sphere.computeVertexNormals();
+      else sphere.setAttribute('normal', place);
       this.surfaces.sphere = this.addSurface('sphere', sphere);
     }
     let sides = 0;
@@ -139,7 +125,7 @@ class Views {
     const cloud = arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position;
     // Discs that just cover a square grid of points.
     this.addPoints('cloud', { position: cloud, normal: this.normal, color: this.color },
-      { size: spacing / radius, pixels: [1, 12], lit: true });
+      { size: spacing / this.radius, pixels: [1, 12], lit: true });
     if (arrays.outliers) {
       const points = rowsOf(this.normalized(arrays.outliers));
       this.addPoints('cloud', { position: points, normal: points }, { pixels: [6, 6], color: outlier_color });
@@ -159,12 +145,8 @@ class Views {
     return name === 'sphere' ? this.sphere : this.positions;
   }
 
-  /** Gives the camera the shape of a view: its rectangle. */
-  aim(name) {
-    const rect = byId(`view-${name}`).getBoundingClientRect();
-    this.camera.aspect = rect.width / rect.height;
-    this.camera.updateProjectionMatrix();
-    return rect;
+  aimView(name) {
+    return this.aim(byId(`view-${name}`), name === 'sphere' ? this.ball_slopes : this.slopes);
   }
 
   /** Both sides of a surface, of which the inner is dark, and its edges. */
@@ -212,7 +194,7 @@ class Views {
 
   /** Marks the vertex next to the pointer. The cloud's points are those of the mesh. */
   pick(name, event) {
-    const rect = this.aim(name);
+    const rect = this.aimView(name);
     this.scene.updateMatrixWorld();
     const ray = new THREE.Raycaster();
     ray.setFromCamera({
@@ -371,12 +353,12 @@ class Views {
     }
     this.light.position.set(-0.5, 0.7, 1).applyQuaternion(this.camera.quaternion);
     for (const name of this.names) {
-      const rect = this.aim(name);
+      const rect = this.aimView(name);
       const part = [rect.left - all.left, all.bottom - rect.bottom, rect.width, rect.height];
       this.renderer.setViewport(...part);
       this.renderer.setScissor(...part);
       for (const other of this.names) this.groups[other].visible = other === name;
-      this.scale.value = (rect.height * devicePixelRatio) / (2 * Math.tan((field_of_view * Math.PI) / 360));
+      this.scale.value = (rect.height * devicePixelRatio) / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
       this.renderer.render(this.scene, this.camera);
     }
   }
