@@ -38,7 +38,9 @@ class Opener {
 public:
   Opener(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view)
       : points_(points), spacing_(spacing), view_(view),
-        mesh_(view.triangles, columnCount(points) + 1), is_open_(mesh_.slotCount(), 0) {}
+        mesh_(view.triangles, columnCount(points) + 1), is_open_(mesh_.slotCount(), 0) {
+    limitSpacing();
+  }
 
   OpenMesh run(std::size_t min_points) {
     for (Index t = 0; t < mesh_.size(); ++t)
@@ -51,10 +53,33 @@ public:
 private:
   bool isOpen(Index t) const { return is_open_[t] != 0; }
 
+  /// Limits the spacing to that of a surface which the place sees at a flat angle: a false point
+  /// between surfaces is far from all others, but not from their rays.
+  void limitSpacing() {
+    // Of the usual angle between rays. With 2 a jaw tears at its rims (RMS 0.048 % instead of
+    // 0.028 %), with 4 false points of a depth image hold sheets (0.61 % instead of 0.41 %).
+    constexpr double most = 3.0;
+    const Positions directions = directionsFrom(view_.place, points_);
+    std::vector<double> angles;
+    for (const auto& t : view_.triangles.colwise())
+      for (int k = 0; k < 3; ++k)
+        if (t[k] != view_.behind && t[(k + 1) % 3] != view_.behind)
+          angles.push_back((directions.col(t[k]) - directions.col(t[(k + 1) % 3])).norm());
+    const double usual = medianOf(angles);
+    for (const Index v : indicesOf(spacing_))
+      spacing_[v] = std::min(spacing_[v], most * usual * (points_.col(v) - view_.place).norm());
+  }
+
   bool isJumpAt(Index t, const Rule& rule) const {
     const auto& [a, b, c] = mesh_.vertices(t);
-    return a == view_.behind || b == view_.behind || c == view_.behind || isJump(a, b, rule) ||
-           isJump(b, c, rule) || isJump(c, a, rule);
+    return a == view_.behind || b == view_.behind || c == view_.behind || isFlat(a, b, c) ||
+           isJump(a, b, rule) || isJump(b, c, rule) || isJump(c, a, rule);
+  }
+
+  /// Whether a triangle has no area, as those at the rim of a grid without heights.
+  bool isFlat(Index a, Index b, Index c) const {
+    const Eigen::Vector3d corner = points_.col(a);
+    return (points_.col(b) - corner).cross(Eigen::Vector3d(points_.col(c)) - corner).isZero(0.0);
   }
 
   bool isJump(Index a, Index b, const Rule& rule) const {
@@ -166,7 +191,7 @@ private:
   }
 
   const Positions& points_;
-  const Indexed<double>& spacing_;
+  Indexed<double> spacing_;
   const ViewMesh& view_;
   SphereMesh mesh_;
   Indexed<std::uint8_t> is_open_;
@@ -192,6 +217,8 @@ OpenMesh openJumps(const Positions& points, const Indexed<double>& spacing, cons
 
 std::vector<Gap> fillGaps(const Positions& points, const ViewMesh& view, std::size_t most_edges,
                           double most_area, OpenMesh& open) {
+  // Of a depth image of 242,749 points 3,071 openings become 185, and its surfaces stay apart.
+  constexpr std::size_t small_gap = 8;
   std::vector<Gap> filled;
   const SphereMesh mesh(open.triangles, columnCount(points) + 1);
   IndexSet seen(mesh.slotCount());
@@ -229,11 +256,13 @@ std::vector<Gap> fillGaps(const Positions& points, const ViewMesh& view, std::si
       twice += (points.col(v) - origin).cross(points.col(next[v]) - origin);
     gap.area = twice.norm() / 2.0;
     // Of one with several loops, surfaces of different depth are on its sides.
-    if (gap.loop.size() != edges || (edges > most_edges && gap.area > most_area))
+    const bool is_small = edges <= small_gap;
+    if (gap.loop.size() != edges || !(is_small || edges <= most_edges || gap.area <= most_area))
       continue;
     for (const Index t : gap.triangles)
       open.is_open[t] = 0;
-    filled.push_back(std::move(gap));
+    if (!is_small)
+      filled.push_back(std::move(gap));
   }
   return filled;
 }

@@ -38,9 +38,10 @@ struct Gap {
 };
 
 /// Fills the gaps whose loops have at most a number of edges or an area, with the triangles that
-/// were opened there.
+/// were opened there. Those of up to 8 edges, which noise and single missing points make, are
+/// filled in any case.
 ///
-/// \return these gaps.
+/// \return the other ones that were filled.
 std::vector<Gap> fillGaps(const Positions& points, const ViewMesh& view, std::size_t most_edges,
                           double most_area, OpenMesh& open);
 
