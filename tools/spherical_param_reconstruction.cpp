@@ -133,6 +133,7 @@ Json cloudReport(Settings settings, const CloudReconstruction& cloud) {
   json["options"] = optionsToJson(optionsOf(settings));
   json["offset"] = cloud.offset;
   json["points"] = cloud.data->points.size();
+  json["view"] = toJson(cloud.result.view);
   json["left_out"] = toJson(cloud.result.left_out);
   json["stages"] = toJson(cloud.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();

@@ -11,8 +11,8 @@ namespace spherical_param {
 
 /// How far a computation is, as reported to Execution::progress.
 struct Progress {
-  /// Of reconstruct(): "neighbors", "graph", "outliers", "parts", "consolidation", "openings",
-  /// "embedding", "triangulation", "optimization", "smoothing" or "quality".
+  /// Of reconstruct(): "view", "neighbors", "graph", "outliers", "parts", "consolidation",
+  /// "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality".
   const char* stage;
   /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops,
   /// and "openings" comes back where a surface is cut.

@@ -12,6 +12,7 @@
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
+#include "view_reconstruction.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -143,7 +144,10 @@ private:
   Candidate sphere() {
     Candidate result;
     clock_.begin("embedding");
-    result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
+    if (auto directions = givenDirections(points_, openings_.unit(), options_))
+      result.embedding.directions = std::move(*directions);
+    else
+      result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
     clock_.begin("triangulation");
     result.triangles = triangulateSphere(result.embedding.directions, clock_.execution());
     clock_.noteMesh();

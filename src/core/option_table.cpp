@@ -152,8 +152,9 @@ OptionRow outlierRow() {
 OptionRow viewRow() {
   OptionRow row = byDefault(choice<ViewMode>(
       "view",
-      "where the cloud is seen from as one layer: found (auto), from above (up), or a place", Everybody,
-      {{"auto", ViewMode::Auto}, {"none", ViewMode::None}, {"up", ViewMode::Up}}, &Options::view));
+      "where the cloud is seen from as one layer: found (auto), from above (up), or a place",
+      Everybody, {{"auto", ViewMode::Auto}, {"none", ViewMode::None}, {"up", ViewMode::Up}},
+      &Options::view));
   row.is_point = true;
   row.get = [name_of = row.get](const Options& options) -> OptionValue {
     if (options.view != ViewMode::Place)
@@ -297,10 +298,9 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   }
   const auto* name = std::get_if<std::string>(&value);
   if (name != nullptr || !row.is_number) {
-    const bool is_known =
-        name != nullptr &&
-        (std::find(row.choices.begin(), row.choices.end(), *name) != row.choices.end() ||
-         (row.is_point && toPoint(*name)));
+    const bool is_known = name != nullptr && (std::find(row.choices.begin(), row.choices.end(),
+                                                        *name) != row.choices.end() ||
+                                              (row.is_point && toPoint(*name)));
     if (!is_known)
       refuse(row, given + (row.choices.empty() ? " is not a number" : " is not known"));
     return;
@@ -374,8 +374,8 @@ std::optional<Eigen::Vector3d> toPoint(const std::string& text) {
     if (k < 2 && stream.get() != ',')
       return std::nullopt;
   }
-  const bool is_point = stream && stream.peek() == std::istringstream::traits_type::eof() &&
-                        point.allFinite();
+  const bool is_point =
+      stream && stream.peek() == std::istringstream::traits_type::eof() && point.allFinite();
   return is_point ? std::optional<Eigen::Vector3d>(point) : std::nullopt;
 }
 
@@ -403,7 +403,9 @@ Options withTopology(Options options) {
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);
   resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);
-  resolve(options.handles, HandleMode::Auto, HandleMode::None);
+  // What a place sees has no handles.
+  const bool is_seen = options.view == ViewMode::Up || options.view == ViewMode::Place;
+  resolve(options.handles, is_seen ? HandleMode::None : HandleMode::Auto, HandleMode::None);
   resolve(options.intersections, IntersectionMode::Remove, IntersectionMode::Keep);
   return options;
 }

@@ -29,6 +29,14 @@ double meanOver(const Positions& points, const Triangles& surface, const Side& s
 
 }  // namespace
 
+double agreementWith(const Positions& normals, const Positions& points, const Triangles& surface) {
+  return meanOver(points, surface, [&](const auto& corners, const Eigen::Vector3d& normal) {
+    const double along =
+        normal.dot(normals.col(corners[0]) + normals.col(corners[1]) + normals.col(corners[2]));
+    return along > 0.0 ? 1.0 : along < 0.0 ? -1.0 : 0.0;
+  });
+}
+
 void mirror(Embedding& embedding) {
   embedding.directions = -embedding.directions;
   for (HistoryFrame& frame : embedding.history.frames)
@@ -48,7 +56,7 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   Triangles& triangles = mesh.triangles;
   const Triangles seen = surfaceOf(mesh);
   const bool is_open = seen.cols() < triangles.cols();
-  const auto decides = [&](double agreement, double least) {
+  const auto turns = [&](double agreement, double least) {
     if (agreement <= -least) {
       flipOrientation(triangles);
       mirror(embedding);
@@ -57,15 +65,8 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   };
   // On three quarters of the area.
   constexpr double min_of_normals = 0.5;
-  if (info.normals.cols() > 0) {
-    const auto side = [&](const auto& corners, const Eigen::Vector3d& normal) {
-      const double along = normal.dot(info.normals.col(corners[0]) + info.normals.col(corners[1]) +
-                                      info.normals.col(corners[2]));
-      return along > 0.0 ? 1.0 : along < 0.0 ? -1.0 : 0.0;
-    };
-    if (decides(meanOver(points, seen, side), min_of_normals))
-      return FacedBy::Normals;
-  }
+  if (info.normals.cols() > 0 && turns(agreementWith(info.normals, points, seen), min_of_normals))
+    return FacedBy::Normals;
   if (!is_open) {
     orientOutward(points, triangles, embedding);
     return FacedBy::Outward;
@@ -81,12 +82,12 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   constexpr double min_seen = 0.5;
   constexpr double min_up = 0.7;
   constexpr double min_hardly_seen = 0.05;
-  if (decides(seen_by_sensor, min_seen))
+  if (turns(seen_by_sensor, min_seen))
     return FacedBy::Viewpoint;
   const auto up = [](const auto&, const Eigen::Vector3d& normal) { return normal.z(); };
-  if (decides(meanOver(points, seen, up), min_up))
+  if (turns(meanOver(points, seen, up), min_up))
     return FacedBy::Up;
-  if (decides(seen_by_sensor, min_hardly_seen))
+  if (turns(seen_by_sensor, min_hardly_seen))
     return FacedBy::Viewpoint;
   orientOutward(points, triangles, embedding);
   return FacedBy::Outward;

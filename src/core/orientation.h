@@ -8,6 +8,12 @@
 
 namespace spherical_param::internal {
 
+/// The mean over the area of a surface of the side of its triangles that normals are on, in [-1,
+/// 1].
+///
+/// \param normals of the points, of any length.
+double agreementWith(const Positions& normals, const Positions& points, const Triangles& surface);
+
 /// Turns an embedding into its mirror image.
 void mirror(Embedding& embedding);
 

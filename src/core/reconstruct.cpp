@@ -333,7 +333,7 @@ Result reconstruct(const Positions& points, const Options& given,
   internal::StageClock clock(options);
   Result result;
   const std::size_t parts = internal::explained(result.left_out, [&] {
-    if (internal::reconstructView(points, options, info, clock, result))
+    if (internal::reconstructView(points, given, info, clock, result))
       return result.surfaces.size();
     internal::Selection selection(points, given, search_of, info, clock, result.left_out);
     internal::meshParts(selection, options, clock, result);

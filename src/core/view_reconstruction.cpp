@@ -3,6 +3,7 @@
 #include "boundary_loops.h"
 #include "depth_jumps.h"
 #include "ordered_points.h"
+#include "orientation.h"
 #include "pi.h"
 #include "power_of_two.h"
 #include "selection.h"
@@ -36,9 +37,9 @@ const char* obstacleOf(const Options& options) {
 }
 
 /// The place that the caller gave, in the unit of nodes.
-Eigen::Vector3d givenPlace(const Positions& nodes, int exponent, const Options& options) {
+Eigen::Vector3d givenPlace(const Positions& nodes, double unit, const Options& options) {
   return options.view == ViewMode::Up ? farAbove(nodes, Eigen::Vector3d::UnitZ())
-                                      : timesPowerOfTwo(options.viewpoint, -exponent);
+                                      : Eigen::Vector3d(options.viewpoint / unit);
 }
 
 /// The mesh from the place that the caller gave, or from one that is found.
@@ -48,7 +49,7 @@ std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& optio
     const Eigen::Vector3d viewpoint = info.viewpoint.value_or(Eigen::Vector3d::Zero());
     return findView(nodes.points, timesPowerOfTwo(viewpoint, -nodes.exponent), execution);
   }
-  const Eigen::Vector3d place = givenPlace(nodes.points, nodes.exponent, options);
+  const Eigen::Vector3d place = givenPlace(nodes.points, std::ldexp(1.0, nodes.exponent), options);
   FoundView view{triangulateView(nodes.points, place, reportOf(execution, "view")),
                  options.view == ViewMode::Up ? ViewSource::Above : ViewSource::Given};
   if (view.mesh.triangles.cols() == 0)
@@ -123,13 +124,18 @@ public:
   }
 
   /// \param inputs of the nodes, ascending.
-  std::vector<Surface> run(const Positions& points, const std::vector<Index>& inputs,
-                           const std::vector<Gap>& filled, LeftOut& left_out) {
+  std::vector<Surface> run(const Positions& points, const Positions& normals,
+                           const std::vector<Index>& inputs, const std::vector<Gap>& filled,
+                           LeftOut& left_out) {
     sortPoints(inputs, left_out);
     makeTriangles();
     makeSphere();
-    for (Surface& surface : surfaces_)
-      judge(Positions(points(Eigen::all, surface.input_of_vertex)), surface);
+    for (Surface& surface : surfaces_) {
+      const Positions vertices = points(Eigen::all, surface.input_of_vertex);
+      if (normals.cols() > 0)
+        faceNormals(normals(Eigen::all, surface.input_of_vertex), vertices, surface);
+      judge(vertices, surface);
+    }
     addFilled(points, filled);
     return std::move(surfaces_);
   }
@@ -171,7 +177,18 @@ private:
     return std::binary_search(view_.hidden.begin(), view_.hidden.end(), node);
   }
 
-  /// The triangles of the surfaces face the place.
+  /// Turns a surface as normals are on three quarters of its area.
+  static void faceNormals(const Positions& normals, const Positions& points, Surface& surface) {
+    const double agreement = agreementWith(normals.array().isFinite().select(normals, 0.0).eval(),
+                                           points, surface.triangles);
+    if (std::abs(agreement) < 0.5)
+      return;
+    surface.faced_by = FacedBy::Normals;
+    if (agreement < 0.0)
+      flipOrientation(surface.triangles);
+  }
+
+  /// The triangles of the surfaces face the place; those around it outward.
   void makeTriangles() {
     std::vector<std::vector<Index>> corners(surfaces_.size());
     for (const Index t : trianglesOfSurface(open_)) {
@@ -186,6 +203,12 @@ private:
     for (std::size_t s = 0; s < surfaces_.size(); ++s)
       surfaces_[s].triangles = Eigen::Map<const Triangles>(
           corners[s].data(), 3, static_cast<Eigen::Index>(corners[s].size() / 3));
+    const bool is_closed = surfaceCount(open_) == open_.is_open.size();
+    for (Surface& surface : surfaces_) {
+      surface.faced_by = is_closed ? FacedBy::Outward : FacedBy::Viewpoint;
+      if (is_closed)
+        flipOrientation(surface.triangles);
+    }
   }
 
   void makeSphere() {
@@ -198,7 +221,6 @@ private:
   }
 
   void judge(const Positions& points, Surface& surface) const {
-    surface.faced_by = FacedBy::Viewpoint;
     surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options_.threads);
     if (!surface.topology.closed)
       surface.boundary = boundaryLoops(surface.triangles, surface.vertexCount());
@@ -246,8 +268,9 @@ private:
 
 }  // namespace
 
-bool reconstructView(const Positions& points, const Options& options, const CloudInfo& info,
+bool reconstructView(const Positions& points, const Options& given, const CloudInfo& info,
                      StageClock& clock, Result& result) {
+  Options options = withTopology(given);
   // A closed mesh is made by the general method, from the directions.
   if (options.view == ViewMode::None || options.surface == SurfaceMode::Closed)
     return false;
@@ -267,6 +290,10 @@ bool reconstructView(const Positions& points, const Options& options, const Clou
   std::optional<FoundView> view = viewOf(nodes, options, info, clock.execution());
   if (!view)
     return false;
+  // Points that are too few for a part are one, as they are without a view.
+  if (given.parts == PartsMode::AsTopology &&
+      inputs.size() < static_cast<std::size_t>(options.min_points))
+    options.parts = PartsMode::All;
   clock.begin("optimization");
   clock.noteMesh();
   flipInView(nodes.points, view->mesh, clock.execution(),
@@ -281,22 +308,28 @@ bool reconstructView(const Positions& points, const Options& options, const Clou
       fillGaps(nodes.points, view->mesh, static_cast<std::size_t>(options.fill_holes),
                std::ldexp(options.fill_holes_area, -2 * nodes.exponent), open);
   clock.begin("quality");
-  result.surfaces =
-      SurfaceMaker(nodes, view->mesh, open, options).run(points, inputs, filled, left_out);
-  if (result.surfaces.empty())
+  std::vector<Surface> surfaces = SurfaceMaker(nodes, view->mesh, open, options)
+                                      .run(points, info.normals, inputs, filled, left_out);
+  std::size_t meshed = 0;
+  for (const Surface& surface : surfaces)
+    meshed += surface.inputs.size();
+  // Less of a cloud is no view.
+  if (!isGiven(options) && options.parts == PartsMode::Each && 4 * meshed < 3 * inputs.size())
+    return false;
+  if (surfaces.empty())
     throw InvalidInput(
         "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
         " points; give a lower min_points, or parts = all");
+  result.surfaces = std::move(surfaces);
   result.left_out = std::move(left_out);
   result.view = View{timesPowerOfTwo(view->mesh.place, nodes.exponent), view->source};
   return true;
 }
 
-std::optional<Positions> directionsOf(const Positions& nodes, int exponent,
-                                      const Options& options) {
-  return isGiven(options)
-             ? std::optional(directionsFrom(givenPlace(nodes, exponent, options), nodes))
-             : std::nullopt;
+std::optional<Positions> givenDirections(const Positions& nodes, double unit,
+                                         const Options& options) {
+  return isGiven(options) ? std::optional(directionsFrom(givenPlace(nodes, unit, options), nodes))
+                          : std::nullopt;
 }
 
 }  // namespace spherical_param::internal

@@ -14,17 +14,17 @@ namespace spherical_param::internal {
 /// surfaces, without verdicts, and the points that are left out.
 ///
 /// \param points  3 x n, finite or not.
-/// \param options as of withTopology().
+/// \param given   options.
 /// \return false if there is no such place, or other options need the general method. Nothing has
 ///         changed then.
 /// \throw InvalidInput if the caller gave a place from which there is no mesh, or such options.
-bool reconstructView(const Positions& points, const Options& options, const CloudInfo& info,
+bool reconstructView(const Positions& points, const Options& given, const CloudInfo& info,
                      StageClock& clock, Result& result);
 
-/// The directions of nodes from the place that the caller gave.
+/// The directions of nodes from the place that the caller gave; none if there is none.
 ///
-/// \param exponent of their scale, \see OrderedPoints.
-/// \return none if the caller gave none.
-std::optional<Positions> directionsOf(const Positions& nodes, int exponent, const Options& options);
+/// \param unit of the nodes' coordinates, a power of two [unit of the input].
+std::optional<Positions> givenDirections(const Positions& nodes, double unit,
+                                         const Options& options);
 
 }  // namespace spherical_param::internal

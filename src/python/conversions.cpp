@@ -26,6 +26,11 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
   if (py::isinstance<py::str>(value))
     return value.cast<std::string>();
   try {
+    if (row.is_point) {
+      const auto point = value.cast<std::array<double, 3>>();
+      const auto text = [](double x) { return py::repr(py::float_(x)).cast<std::string>(); };
+      return text(point[0]) + ',' + text(point[1]) + ',' + text(point[2]);
+    }
     if (PyIndex_Check(value.ptr()) != 0) {
       PyObject* const index = PyNumber_Index(value.ptr());  // none for an array of two numbers
       if (index == nullptr)
@@ -207,8 +212,8 @@ py::list optionRows() {
   for (const OptionRow& row : optionTable())
     rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
                          "choices"_a = row.choices, "is_number"_a = row.is_number,
-                         "is_integer"_a = row.is_integer, "optional"_a = row.optional,
-                         "default"_a = toObject(row.get({}))));
+                         "is_integer"_a = row.is_integer, "is_point"_a = row.is_point,
+                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
   return rows;
 }
 
@@ -247,6 +252,8 @@ py::dict toDict(const Result& result) {
   for (const Finding& finding : result.findings)
     findings.append(Converter{false}.fieldsOf(finding));
   return py::dict("surfaces"_a = py::tuple(surfaces),
+                  "view"_a = result.view ? Converter{false}.fieldsOf(*result.view)
+                                         : py::object(py::none()),
                   "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,
                   "verdict"_a = result.verdict, "findings"_a = py::tuple(findings),
                   "failures"_a = py::tuple(py::cast(result.failures)));
@@ -256,6 +263,7 @@ py::list resultTable() {
   py::list rows;
   std::set<std::string> known;
   addRows(kOf<Surface>, rows, known);
+  addRows(kOf<View>, rows, known);
   addRows(kOf<LeftOut>, rows, known);
   return rows;
 }

@@ -80,8 +80,9 @@ TEST_P(EveryOption, ExtremeIsReadBackChangesNoOtherAndIsMeshed) {
       }
     // Four points are no part, and of four one may deviate.
     for (const Index n : {row.name == "parts" || row.name == "outliers" ? 60 : 4, 150})
-      EXPECT_TRUE(
-          test::isSphereOverAll(test::surfaceOf(test::randomSphere(n, 7), options).triangles, n));
+      EXPECT_EQ(
+          test::isSphereOverAll(test::surfaceOf(test::randomSphere(n, 7), options).triangles, n),
+          options.view != ViewMode::Up);  // from above it is no sphere
   }
 }
 

@@ -18,7 +18,7 @@ import numpy as np
 import shapes
 import spherical_param as sp
 
-STAGES = ["neighbors", "graph", "outliers", "parts"]
+STAGES = ["view", "neighbors", "graph", "outliers", "parts"]
 STAGES += ["openings", "embedding", "triangulation", "optimization", "quality"]
 
 INTERRUPTED = """

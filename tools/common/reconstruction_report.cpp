@@ -166,6 +166,10 @@ Json toJson(const Surface& surface) {
   return json;
 }
 
+Json toJson(const std::optional<View>& view) {
+  return view ? Writer().fieldsOf(*view) : Json();
+}
+
 Json toJson(const LeftOut& left_out) {
   return Writer().fieldsOf(left_out);
 }

@@ -4,6 +4,7 @@
 #include "common/json_report.h"
 #include "spherical_param/result.h"
 
+#include <optional>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -13,6 +14,8 @@ namespace spherical_param::tools {
 /// 1,000 intersecting pairs. Arrays by vertex or triangle are omitted.
 Json toJson(const Surface& surface);
 
+/// null without a view.
+Json toJson(const std::optional<View>& view);
 Json toJson(const LeftOut& left_out);
 Json toJson(const std::vector<Finding>& findings);
 

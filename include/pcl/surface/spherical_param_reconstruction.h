@@ -78,6 +78,7 @@ public:
   using IntersectionMode = spherical_param::IntersectionMode;    ///< what becomes of intersections
   using OutlierMode = spherical_param::OutlierMode;              ///< which points are left out
   using PartsMode = spherical_param::PartsMode;                  ///< which parts are meshed
+  using ViewMode = spherical_param::ViewMode;                    ///< where the cloud is seen from
   /** \brief Receives the progress of the work; returning false cancels it. */
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
@@ -91,6 +92,24 @@ public:
    * part each. */
   void setTopology(TopologyMode mode) { options_.topology = mode; }
   TopologyMode getTopology() const { return options_.topology; }  ///< As set. \return it
+
+  /** \brief Set where the cloud is seen from. One that a place sees as one layer, as a depth camera
+   * or a scanner on a tripod does, is meshed by the directions from there: in a fraction of the
+   * time, and without intersections. The mesh ends where the depth jumps.
+   * \param[in] mode default ViewMode::Auto: sensor_origin_ of the cloud, or a place that is searched
+   * for, if it sees one layer. None: no place. Up: far above.
+   * \note getResult().view has the place that was used. */
+  void setView(ViewMode mode) { options_.view = mode; }
+  ViewMode getView() const { return options_.view; }  ///< As set. \return it
+
+  /** \brief Set the place that the cloud is seen from, instead of sensor_origin_.
+   * \param[in] place of the sensor [unit of the input] */
+  void setViewpoint(const Eigen::Vector3d& place) {
+    options_.view = ViewMode::Place;
+    options_.viewpoint = place;
+  }
+  /** \brief Get the value of setViewpoint(). \return it */
+  const Eigen::Vector3d& getViewpoint() const { return options_.viewpoint; }
 
   /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
    * before meshing: for noisy and for merged scans.

@@ -130,17 +130,20 @@ Sight assessView(const Positions& points, const Indexed<double>& spacing, const 
     around[w].mixed += is_mixed(v) ? 1 : 0;
   });
   std::size_t layered = 0;
+  std::size_t rough = 0;
   std::vector<double> roughness;
   for (Index v = 0; v < n; ++v)
     if (around[v].edges > 0) {
-      layered += is_mixed(v) && 2 * around[v].mixed >= around[v].edges ? 1 : 0;
       roughness.push_back(std::abs(around[v].depth) / around[v].across);
+      rough += roughness.back() > 0.8 ? 1 : 0;
+      layered += is_mixed(v) && 2 * around[v].mixed >= around[v].edges ? 1 : 0;
     }
   Sight sight;
   if (edges == 0)
     return sight;
   sight.jumps = static_cast<double>(jumps) / static_cast<double>(edges);
   sight.layers = static_cast<double>(layered) / static_cast<double>(n);
+  sight.rough = static_cast<double>(rough) / static_cast<double>(n);
   sight.roughness = medianOf(roughness);
   sight.is_around = view.behind < 0;
   return sight;
@@ -154,12 +157,17 @@ RayPattern::RayPattern(const Positions& points, const NeighborSearch& search) {
   points_ = points(Eigen::all, sample);
   nearest_.resize(3, points_.cols());
   spacing_.resize(points_.cols());
+  std::vector<double> distances;
   for (Index i = 0; i < points_.cols(); ++i) {
     const auto near =
         nearestOthers(points, sample[static_cast<std::size_t>(i)], listOf(lists, i), neighbors);
     nearest_.col(i) = points.col(near.front().point);
     spacing_[i] = std::log(near.back().squared_distance) / 2.0;
+    distances.push_back(std::log(near.front().squared_distance) / 2.0);
   }
+  const Eigen::ArrayXd logarithms =
+      Eigen::Map<const Eigen::ArrayXd>(distances.data(), spacing_.size());
+  spread_ = (logarithms - medianOf(distances)).abs().min(1.0).mean();
 }
 
 /// Mean deviation of the logarithm of the angle between neighbouring rays from its median or from a
@@ -198,11 +206,17 @@ bool RayPattern::isSensor(const Eigen::Vector3d& place) const {
   // Of sensors up to 0.09, also in coarse steps of depth; from elsewhere, and of objects, from 0.15
   // on.
   constexpr double max_unevenness = 0.12;
-  if (unevenness(place, true) < max_unevenness)
-    return true;
+  // Of sensors up to 0.34; more if the points are evenly spread over the surface itself.
+  constexpr double max_of_spread = 0.5;
+  return unevenness(place, true) < std::min(max_unevenness, max_of_spread * spread_) ||
+         isSpreadFrom(place);
+}
+
+bool RayPattern::isSpreadFrom(const Eigen::Vector3d& place) const {
   // The slope of the logarithms is 1 to 1.4 of scanners, and -0.9 to 0.3 of objects.
   constexpr double min_correlation = 0.8;
-  const Eigen::ArrayXd distance = (points_.colwise() - place).colwise().norm().array().log();
+  const Eigen::ArrayXd distance =
+      (points_.colwise() - place).colwise().norm().array().log().transpose();
   const Eigen::ArrayXd x = distance - distance.mean();
   const Eigen::ArrayXd y = spacing_.array() - spacing_.mean();
   const double common = (x * y).sum();
@@ -297,21 +311,26 @@ std::optional<Eigen::Vector3d> axisOfSheet(const Positions& points) {
 class Searcher {
 public:
   Searcher(const Positions& points, const Execution& execution)
-      : points_(points), execution_(execution), search_(makeNeighborSearch(points, execution)) {}
+      : points_(points), execution_(execution), report_(reportOf(execution, "view")),
+        search_(makeNeighborSearch(points, execution)) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
     // Smaller clouds are meshed so fast that a look or a search does not pay.
     constexpr Eigen::Index min_points = 1000;
+    constexpr Eigen::Index min_of_sheet = 5000;
     constexpr Eigen::Index min_searched = 20000;
     if (!viewpoint.isZero(0.0))
       if (auto found = from(viewpoint, ViewSource::Given))
         return found;
+    reportFraction(report_, 0.0);
     if (points_.cols() < min_points)
       return std::nullopt;
     const RayPattern pattern(points_, search_);
     if (pattern.isSensor(Eigen::Vector3d::Zero()))
       if (auto found = from(Eigen::Vector3d::Zero(), ViewSource::Origin))
         return found;
+    if (points_.cols() < min_of_sheet)
+      return std::nullopt;
     if (isElevationGrid(points_))
       return from(farAbove(points_, Eigen::Vector3d::UnitZ()), ViewSource::Above);
     if (points_.cols() >= min_searched)
@@ -334,12 +353,15 @@ private:
       if (!(sight.jumps < max_jumps))
         return std::nullopt;
     }
-    FoundView found{triangulateView(points_, place, {}), source};
+    FoundView found{triangulateView(points_, place, report_), source};
     const Sight sight = assessView(points_, spacing(), found.mesh);
-    // All around a place without a sensor is an object that may fold, unless nothing jumps.
-    const bool may_fold = source != ViewSource::Rays && sight.is_around && sight.jumps > 0.0 &&
-                          !RayPattern(points_, search_).isSensor(place);
-    return sight.isOneLayer() && !may_fold ? std::optional(std::move(found)) : std::nullopt;
+    // All around a place without a sensor is an object that may fold, unless nothing jumps; below
+    // one may be two layers.
+    const bool is_whole = source == ViewSource::Given && sight.jumps == 0.0;
+    const bool is_doubtful = sight.is_around
+                                 ? !is_whole && !RayPattern(points_, search_).isSpreadFrom(place)
+                                 : source == ViewSource::Above && sight.isRough();
+    return sight.isOneLayer() && !is_doubtful ? std::optional(std::move(found)) : std::nullopt;
   }
 
   const Indexed<double>& spacing() {
@@ -360,7 +382,7 @@ private:
     constexpr double least_step = 0.001;
     double step = 0.02;
     for (int round = 0; round < rounds && step > least_step; ++round) {
-      const ViewMesh view = triangulateView(points_, next, {});
+      const ViewMesh view = triangulateView(points_, next, report_);
       const double jumps = assessView(points_, spacing(), view).jumps;
       if (jumps < least) {
         least = jumps;
@@ -369,6 +391,8 @@ private:
       } else {
         step /= 2.0;
       }
+      if (window.empty())
+        break;
       const Positions points = points_(Eigen::all, window);
       Indexed<double> spacing(window.size());
       for (std::size_t i = 0; i < window.size(); ++i)
@@ -411,6 +435,7 @@ private:
 
   const Positions& points_;
   const Execution& execution_;
+  FractionReport report_;
   NeighborSearch search_;
   Indexed<double> spacing_;
 };

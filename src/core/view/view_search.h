@@ -22,10 +22,13 @@ struct Sight {
   /// Median difference in depth of a point from its neighbours, in distances across the rays: up to
   /// 1 of noisy scans, from 1.6 on of two layers, however coarse.
   double roughness = 1.0;
+  double rough = 1.0;      ///< share of the points where it is above 0.8
   bool is_around = false;  ///< points are all around the place
 
   /// Whether the place sees one layer.
   bool isOneLayer() const;
+  /// Whether more is rough than jumps explain: there is noise, or another layer near by.
+  bool isRough() const { return rough > 0.15 + 4.0 * jumps; }
 };
 
 /// \param points  3 x n.
@@ -43,6 +46,8 @@ public:
   /// Whether a sensor there saw the points: the angles between neighbouring rays hardly change, or
   /// the spacing grows with the distance.
   bool isSensor(const Eigen::Vector3d& place) const;
+  /// Whether the spacing grows with the distance from a place, as it does not on objects around it.
+  bool isSpreadFrom(const Eigen::Vector3d& place) const;
 
   /// The place from which the angles between neighbouring rays change least; none if they change
   /// too much.
@@ -54,7 +59,8 @@ private:
 
   Positions points_;  ///< some of them
   Positions nearest_;
-  Eigen::VectorXd spacing_;
+  Eigen::VectorXd spacing_;  ///< logarithms
+  double spread_ = 0.0;      ///< mean deviation of the logarithm of the nearest distance
 };
 
 /// The mesh of a cloud from the first of some places that sees one layer.

@@ -24,7 +24,7 @@ OTHERS = (
         None,
         "True, or callable(stage, fraction)",
         """True: a bar on the standard error. A function is called from the calling thread during the
-        work. ``stage`` is "read", "neighbors", "graph", "outliers", "parts",
+        work. ``stage`` is "read", "view", "neighbors", "graph", "outliers", "parts",
         "consolidation", "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality";
         ``fraction``, in [0, 1], is that of the stage's current loop. If it returns False, the work
         ends with Cancelled; if it raises, with that exception.""",
@@ -41,6 +41,8 @@ def keywords(table: list[dict[str, Any]]) -> list[tuple[str, str, Any, str, str]
             kinds.append("Literal[" + ", ".join(f'"{name}"' for name in row["choices"]) + "]")
         if row["is_number"]:
             kinds.append("SupportsIndex" if row["is_integer"] else "SupportsFloat")
+        if row["is_point"]:
+            kinds.append("Sequence[SupportsFloat]")
         kind = kinds[0] if len(kinds) == 1 else f"Union[{', '.join(kinds)}]"
         if row["optional"]:
             kind = f"Optional[{kind}]"
@@ -67,7 +69,8 @@ def stub(table: list[dict[str, Any]]) -> str:
         return f"@overload\ndef reconstruct(\n{lines}) -> {result}: ...\n"
 
     as_topology = 'Literal["topology"] = ...'
-    return f'''from typing import Literal, Optional, SupportsFloat, SupportsIndex, Union, overload
+    return f'''from collections.abc import Sequence
+from typing import Literal, Optional, SupportsFloat, SupportsIndex, Union, overload
 
 from ._clouds import CloudLike
 from ._progress import Progress

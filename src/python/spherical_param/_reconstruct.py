@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
+from collections.abc import Sequence  # noqa: F401
 from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union  # noqa: F401
 
 from . import _arguments as arguments

@@ -19,7 +19,7 @@ from . import _core
 from ._arguments import ByteArray, FloatArray, IndexArray
 from ._clouds import Cloud
 from ._errors import InvalidInput
-from ._figures import Finding, LeftOut, Surface, attributes, make
+from ._figures import Finding, LeftOut, Surface, View, attributes, make
 from ._files import MeshExport, vertex_normals
 from ._progress import Progress, listening
 
@@ -79,6 +79,7 @@ class Result(Surface, MeshExport):
     #: (v, 3) the points[input_of_vertex], then ``added_vertices`` others [unit of the input]
     vertices: FloatArray
     vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
+    view: Optional[View]  #: the place from which the cloud is seen as one layer
     left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
     colors: Optional[ByteArray]  #: (v, 3) of the points; None if they have none
@@ -179,6 +180,7 @@ class Results(tuple[Result, ...], MeshExport):
     verdict: str  #: a headline: "3 surfaces, all sound."
     findings: tuple[Finding, ...]  #: of all results; with several, each names its parts
     failures: tuple[str, ...]  #: why parts could not be meshed
+    view: Optional[View]  #: the place from which the cloud is seen as one layer
     left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
 
@@ -238,6 +240,7 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     cloud.
     """
     left_out = LeftOut(**fields["left_out"])
+    view = None if fields["view"] is None else View(**fields["view"])
     results = []
     for part, surface in enumerate(fields["surfaces"]):
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
@@ -251,7 +254,7 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
         figures["vertex_of_input"] = vertex_of_input
         results.append(
             Result(
-                **figures, vertices=positions, left_out=left_out, stages=fields["stages"],
+                **figures, vertices=positions, view=view, left_out=left_out, stages=fields["stages"],
                 colors=None if cloud.colors is None else cloud.colors[vertices],
                 _source=Source(cloud, options, part),
             )
@@ -260,6 +263,7 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     all_results.verdict = fields["verdict"]
     all_results.findings = tuple(Finding(**make("Finding", each)) for each in fields["findings"])
     all_results.failures = fields["failures"]
+    all_results.view = view
     all_results.left_out = left_out
     all_results.stages = fields["stages"]
     return all_results
