@@ -302,10 +302,11 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   const bool is_grid = view->source == ViewSource::Above && isElevationGrid(nodes.points);
   const Positions flat = is_grid ? withoutHeights(nodes.points) : Positions();
   const Positions& measured = is_grid ? flat : nodes.points;
-  OpenMesh open = openJumps(measured, spacingOf(measured, clock.execution()), view->mesh,
-                            static_cast<std::size_t>(options.min_points));
+  const Indexed<double> spacing = spacingOf(measured, clock.execution());
+  OpenMesh open =
+      openJumps(measured, spacing, view->mesh, static_cast<std::size_t>(options.min_points));
   const std::vector<Gap> filled =
-      fillGaps(nodes.points, view->mesh, static_cast<std::size_t>(options.fill_holes),
+      fillGaps(nodes.points, spacing, view->mesh, static_cast<std::size_t>(options.fill_holes),
                std::ldexp(options.fill_holes_area, -2 * nodes.exponent), open);
   clock.begin("quality");
   std::vector<Surface> surfaces = SurfaceMaker(nodes, view->mesh, open, options)

@@ -38,11 +38,12 @@ struct Gap {
 };
 
 /// Fills the gaps whose loops have at most a number of edges or an area, with the triangles that
-/// were opened there. Those of up to 8 edges, which noise and single missing points make, are
+/// were opened there. Those of up to 8 short edges, which noise and single missing points make, are
 /// filled in any case.
 ///
 /// \return the other ones that were filled.
-std::vector<Gap> fillGaps(const Positions& points, const ViewMesh& view, std::size_t most_edges,
-                          double most_area, OpenMesh& open);
+std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
+                          const ViewMesh& view, std::size_t most_edges, double most_area,
+                          OpenMesh& open);
 
 }  // namespace spherical_param::internal
