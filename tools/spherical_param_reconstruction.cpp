@@ -178,7 +178,7 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
   const std::size_t surfaces = cloud.result.surfaces.size();
   std::vector<std::string> files;
   for (const std::string& name : outputsOf(settings)) {
-    const bool is_largest = name == settings.sphere && surfaces > 1;
+    const bool is_largest = name == settings.sphere && surfaces > 1 && !cloud.result.view;
     files.push_back(isNumbered(name) && surfaces > 1
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
                         : numbered(name, 0) + (is_largest ? " (the largest)" : ""));
@@ -249,7 +249,7 @@ void writePage(const Settings& settings, CloudReconstruction& cloud, const Surfa
 }
 
 /// Several surfaces go to one file and page, or to numbered files. A sphere without a number is of
-/// the largest.
+/// the largest, but for those that one place sees, which are on one sphere.
 void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& run) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   const bool is_numbered = isNumbered(settings.output);
@@ -262,12 +262,16 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& r
       checkOutputs({settings.input}, outputsOf(of_part));
       writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, run);
     }
-    if (!settings.sphere.empty() && (i == 0 || isNumbered(settings.sphere))) {
+    if (!settings.sphere.empty() &&
+        (isNumbered(settings.sphere) || (i == 0 && !cloud.result.view))) {
       run.write(of_part.sphere, sphereOf(cloud, surfaces[i], surfaces[i].sphere));
     }
     if (isNumbered(settings.page)) {
       writePage(of_part, cloud, &surfaces[i], run);
     }
+  }
+  if (cloud.result.view && !settings.sphere.empty() && !isNumbered(settings.sphere)) {
+    run.write(settings.sphere, JoinedMesh(cloud, true).view());
   }
   if (!settings.page.empty() && !isNumbered(settings.page)) {
     writePage(settings, cloud, nullptr, run);
@@ -283,7 +287,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   reconstructCloud(settings.input, settings.reconstruction, run.console, cloud);
   cloud.offset = settings.report.offsetOf(settings.output, *cloud.data);
   if (!settings.sphere.empty()) {
-    requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
+    requireSpheres(settings.input, cloud, isNumbered(settings.sphere) || cloud.result.view);
   }
   writeFiles(settings, cloud, run);
   run.publish([&] { return report(settings, cloud); }, summaryOf(settings, cloud, run.console));

@@ -90,6 +90,38 @@ TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSen
   EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Viewpoint);
 }
 
+TEST_F(SphericalParamReconstruction, SeesACloudFromItsSensorOrAGivenPlace) {
+  using spherical_param::ViewSource;
+  Positions places(3, 4800);  // two walls, seen by a camera at (1, 2, 3)
+  for (int i = 0; i < 4800; ++i) {
+    const double x = (i % 80 + 0.5) / 80 - 0.5;
+    const double y = (i / 80 + 0.5) / 60 - 0.5;
+    const double z = x < 0.0 ? 2.0 : 3.0;
+    places.col(i) << 1.0 + z * x, 2.0 + z * y, 3.0 + z;
+  }
+  const Cloud::Ptr cloud = makeCloud(places);
+  Reconstruction reconstruction = reconstructionOf(cloud);
+  EXPECT_EQ(reconstruction.getView(), Reconstruction::ViewMode::Auto);
+  meshed(reconstruction);
+  EXPECT_FALSE(reconstruction.getResult().view);
+  reconstruction.setViewpoint({1.0, 2.0, 3.0});
+  EXPECT_EQ(reconstruction.getViewpoint(), Eigen::Vector3d(1.0, 2.0, 3.0));
+  const auto expect_view = [&] {
+    meshed(reconstruction);
+    ASSERT_TRUE(reconstruction.getResult().view);
+    EXPECT_EQ(reconstruction.getResult().view->source, ViewSource::Given);
+    EXPECT_EQ(reconstruction.getResult().view->place, Eigen::Vector3d(1.0, 2.0, 3.0));
+    EXPECT_EQ(reconstruction.getResult().surfaces.size(), 2U);
+  };
+  expect_view();
+  reconstruction.setView(Reconstruction::ViewMode::Auto);
+  cloud->sensor_origin_ = Eigen::Vector4f(1.0F, 2.0F, 3.0F, 0.0F);
+  expect_view();
+  reconstruction.setView(Reconstruction::ViewMode::None);
+  meshed(reconstruction);
+  EXPECT_FALSE(reconstruction.getResult().view);
+}
+
 TEST_F(SphericalParamReconstruction, OrganizedCloudsAreMeshedWhateverIsDenseSays) {
   for (const bool is_dense : {true, false}) {
     const HardCase hard;

@@ -81,3 +81,10 @@ def structured(**columns):
     for name, column in columns.items():
         array[name] = column
     return array
+
+
+def depth_image(columns=80, rows=60):
+    """What a camera at the origin sees along z: a box before a wall."""
+    y, x = (np.mgrid[:rows, :columns].reshape(2, -1) + 0.5) / [[rows], [columns]] - 0.5
+    z = np.where((abs(x) < 0.2) & (abs(y) < 0.15), 2.0, 3.0)
+    return np.stack([x * z, y * z, z], axis=1)

@@ -189,6 +189,21 @@ class Options(unittest.TestCase):
         self.assertEqual(mesh.vertex_residuals.shape, (200,))
         self.assertAlmostEqual(mesh.vertex_residuals.mean(), mesh.embedding.residual, delta=1e-12)
 
+    def test_a_cloud_is_seen_from_the_sensor_or_a_given_place(self):
+        points = shapes.depth_image()
+        surfaces = sp.reconstruct(points)
+        self.assertEqual(len(surfaces), 2)
+        self.assertEqual((surfaces.view.source, surfaces[1].view.source), ("origin", "origin"))
+        self.assertTrue(surfaces.verdict.startswith("Seen from one place: 2 surfaces with openings"))
+        for place in ((5, 6.5, 7), np.array([5, 6.5, 7]), "5,6.5,7"):
+            moved = sp.reconstruct(points + [5, 6.5, 7], view=place)
+            np.testing.assert_array_equal(moved.view.place, [5, 6.5, 7])
+            self.assertEqual([len(each.vertices) for each in moved], [len(each.vertices) for each in surfaces])
+        self.assertIsNone(sp.reconstruct(points, view="none").view)
+        for wrong in ((1, 2), "1,2", 3, (1, 2, np.nan)):
+            with self.assertRaisesRegex(sp.InvalidInput, "view = .*; use auto, none, up or x,y,z"):
+                sp.reconstruct(points, view=wrong)
+
     def test_wrong_values_are_refused_with_cause_and_remedy(self):
         for row in _core.option_table():
             wrong = [1j, b"1", np.array([8, 9])]

@@ -20,7 +20,7 @@ TYPES = {
     "intersecting_triangles": 0, "peak_memory_bytes": 0, "usable": True, "closed": True, "manifold": True,
     "oriented": True, "is_noisy": True, "is_out_of_time": True, "verdict": "", "findings": [], "openings": [],
     "self_intersecting_pairs": [], "outliers": [], "boundary": [], "handles": [], "consolidation": None,
-    "smoothing": None, "stages": [{"name": "", "seconds": 0.1}],
+    "smoothing": None, "view": None, "stages": [{"name": "", "seconds": 0.1}],
     "left_out": {"not_finite": [], "outliers": [], "other_parts": []},
     "embedding": {"iterations": 0, "start_level": 0, "residual": 0.1, "centroid_norm": 0.1, "converged": True,
                   "fallback_start": True, "stop_reason": "", "barrier": "", "residuals": [],
@@ -240,6 +240,28 @@ class ReconstructionTool(ToolTest):
         # What it encloses means nothing.
         self.check_entries(report["measures"], {"volume": None, "centroid": None, "inertia": None})
         self.assertNotIn("centroid", done.stdout)
+
+    def test_a_depth_image_is_seen_from_its_sensor(self):
+        y, x = (np.mgrid[:60, :80].reshape(2, -1) + 0.5) / [[60], [80]] - 0.5
+        z = np.where((abs(x) < 0.2) & (abs(y) < 0.15), 2.0, 3.0)
+        write_xyz("depth.xyz", np.stack([x * z, y * z, z], axis=1) + [10, 0, 0])
+        report = reported("depth.xyz", "mesh.ply", "-view", "10,0,0", "-sphere", "sphere.ply")
+        self.assertEqual(report["view"], {"place": [10.0, 0.0, 0.0], "source": "given"})
+        self.assertTrue(report["verdict"].startswith("Seen from one place: 2 surfaces with openings"))
+        mesh, sphere = Mesh("mesh.ply"), Mesh("sphere.ply")
+        np.testing.assert_array_equal(mesh.triangles, sphere.triangles)
+        rays = mesh.points - [10, 0, 0]
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        np.testing.assert_allclose(sphere.points, rays, atol=1e-6)
+        self.assertIsNone(reported("depth.xyz", "mesh.ply", "-view", "none")["view"])
+        for value, remedy in (("1,2", "give -view auto, none, up or x,y,z"), ("1,2,inf", "give -view auto")):
+            refused = tool("depth.xyz", "mesh.ply", "-view", value)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(remedy, refused.stderr)
+        refused = tool("depth.xyz", "new.ply", "-view", "10,0,0", "-smoothing", "5")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("smoothing cannot be used with a view\n  remedy: leave one of them out", refused.stderr)
+        self.assertFalse(pathlib.Path("new.ply").exists())
 
     def test_smoothing_moves_the_points_alone_and_tells_how_far(self):
         noisy = with_noise(ellipsoid(1000), 0.01)

@@ -167,10 +167,11 @@ MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface) {
   return mesh;
 }
 
-JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
+JoinedMesh::JoinedMesh(const CloudReconstruction& cloud, bool is_sphere)
+    : data_(cloud.data), is_sphere_(is_sphere) {
   Eigen::Index triangles = 0;
   std::size_t vertices = 0;
-  bool has_moved = false;
+  bool has_moved = is_sphere;
   bool has_added = false;
   for (const Surface& surface : cloud.result.surfaces) {
     triangles += surface.triangles.cols();
@@ -188,7 +189,7 @@ JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
     triangles += surface.triangles.cols();
     if (has_moved) {
       places_.middleCols(first, static_cast<Eigen::Index>(surface.vertexCount())) =
-          vertexPositions(cloud, surface);
+          is_sphere ? surface.sphere : vertexPositions(cloud, surface);
     }
     point_of_vertex_.insert(point_of_vertex_.end(), surface.input_of_vertex.begin(),
                             surface.input_of_vertex.end());
@@ -205,6 +206,9 @@ MeshView JoinedMesh::view() const {
     mesh.moveTo(places_);
   }
   mesh.markAdded(added_);
+  if (is_sphere_) {
+    mesh.leaveOutNormals();
+  }
   return mesh;
 }
 

@@ -53,7 +53,8 @@ MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface);
 /// All surfaces of a cloud as one mesh.
 class JoinedMesh {
 public:
-  explicit JoinedMesh(const CloudReconstruction& cloud);
+  /// \param is_sphere the vertices are on the sphere that all surfaces have.
+  explicit JoinedMesh(const CloudReconstruction& cloud, bool is_sphere = false);
   /// This must outlive the view.
   MeshView view() const;
 
@@ -61,6 +62,7 @@ private:
   std::shared_ptr<const PointData> data_;
   std::vector<Index> point_of_vertex_;
   Triangles triangles_;
+  bool is_sphere_;
   Positions places_;                 ///< empty if no points were moved
   std::vector<std::uint8_t> added_;  ///< marks of vertices; empty if none was added
 };
