@@ -162,6 +162,8 @@ ViewMesh triangulateAround(const Eigen::Vector3d& place, const Positions& points
                            const FractionReport& report) {
   const Positions directions = directionsFrom(place, points);
   const Eigen::Vector3d mean = directions.rowwise().mean();
+  if (!mean.allFinite())  // so far away that differences leave the range of double
+    return {};
   if ((mean.transpose() * directions).minCoeff() > 0.0)
     return triangulateFrom(place, points, true, report);
   // The mean may be off the middle: then points are in front of the place, but not of the mean.

@@ -2,16 +2,13 @@
 
 #include "depth_jumps.h"
 #include "neighbor_search.h"
-#include "rows.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "place_descent.h"
+#include "ray_pattern.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -20,62 +17,6 @@ namespace {
 
 /// Sides longer than this many spacings jump.
 constexpr double kJump = 4.0;
-/// Every so many points of a cloud, at most a number of them.
-std::vector<Index> sampleOf(const Positions& points, Eigen::Index most) {
-  const Eigen::Index n = std::min(points.cols(), most);
-  std::vector<Index> sample;
-  for (Eigen::Index i = 0; i < n; ++i)
-    sample.push_back(static_cast<Index>(i * points.cols() / n));
-  return sample;
-}
-
-Eigen::Vector3d middleOf(const Positions& points) {
-  return (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2.0;
-}
-
-/// Directions that are evenly spread over the sphere.
-std::vector<Eigen::Vector3d> spreadDirections(int count) {
-  constexpr double golden_angle = 2.399963229728653;
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double across = std::sqrt(1.0 - z * z);
-    directions.emplace_back(across * std::cos(i * golden_angle),
-                            across * std::sin(i * golden_angle), z);
-  }
-  return directions;
-}
-
-/// Axes of the spread of points, the shortest first, and their variances.
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Positions& points) {
-  const Positions centered = points.colwise() - points.rowwise().mean();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-      Eigen::Matrix3d(centered * centered.transpose()));
-}
-
-/// Moves a place along axes while a cost falls, with shorter and shorter steps.
-///
-/// \param most_moves with each step.
-template <typename Cost>
-double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double least_step,
-               int most_moves, Eigen::Vector3d& place) {
-  double best = cost(place);
-  for (; step > least_step; step /= 2.0)
-    for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < most_moves; k = (k + 7) % 6) {
-      const Eigen::Vector3d other = place + (k % 2 == 0 ? step : -step) * axes.col(k / 2);
-      const double found = cost(other);
-      if (!(found < best)) {
-        ++failed;
-        continue;
-      }
-      best = found;
-      place = other;
-      failed = 0;
-      ++moves;
-      --k;  // the same way again
-    }
-  return best;
-}
 
 }  // namespace
 
@@ -149,132 +90,6 @@ Sight assessView(const Positions& points, const Indexed<double>& spacing, const 
   return sight;
 }
 
-RayPattern::RayPattern(const Positions& points, const NeighborSearch& search) {
-  constexpr Eigen::Index most = 2000;
-  constexpr int neighbors = 6;
-  const std::vector<Index> sample = sampleOf(points, most);
-  const NeighborLists lists = search(sample, neighbors);
-  points_ = points(Eigen::all, sample);
-  nearest_.resize(3, points_.cols());
-  spacing_.resize(points_.cols());
-  std::vector<double> distances;
-  for (Index i = 0; i < points_.cols(); ++i) {
-    const auto near =
-        nearestOthers(points, sample[static_cast<std::size_t>(i)], listOf(lists, i), neighbors);
-    nearest_.col(i) = points.col(near.front().point);
-    spacing_[i] = std::log(near.back().squared_distance) / 2.0;
-    distances.push_back(std::log(near.front().squared_distance) / 2.0);
-  }
-  const Eigen::ArrayXd logarithms =
-      Eigen::Map<const Eigen::ArrayXd>(distances.data(), spacing_.size());
-  spread_ = (logarithms - medianOf(distances)).abs().min(1.0).mean();
-}
-
-/// Mean deviation of the logarithm of the angle between neighbouring rays from its median or from a
-/// quadratic function of the direction: pinhole cameras and scanners on a tripod have some.
-double RayPattern::unevenness(const Eigen::Vector3d& place, bool is_quadratic) const {
-  constexpr double least_angle = 1e-12;
-  constexpr double outlier = 0.7;
-  constexpr int rounds = 2;
-  constexpr int terms = 10;
-  const Eigen::Index n = points_.cols();
-  Eigen::VectorXd angle(n);
-  Eigen::Matrix<double, Eigen::Dynamic, terms> monomials(is_quadratic ? n : 0, terms);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Vector3d d = (points_.col(i) - place).normalized();
-    angle[i] = std::log(d.cross((nearest_.col(i) - place).normalized()).norm() + least_angle);
-    if (is_quadratic)
-      monomials.row(i) << 1.0, d.x(), d.y(), d.z(), d.x() * d.x(), d.x() * d.y(), d.x() * d.z(),
-          d.y() * d.y(), d.y() * d.z(), d.z() * d.z();
-  }
-  std::vector<double> values(angle.data(), angle.data() + n);
-  angle.array() -= medianOf(values);
-  Eigen::VectorXd rest = angle;
-  for (int round = 0; is_quadratic && round < rounds; ++round) {
-    const Eigen::VectorXd weights = (rest.array().abs() < outlier).cast<double>();
-    Eigen::Matrix<double, terms, terms> normal =
-        monomials.transpose() * weights.asDiagonal() * monomials;
-    normal.diagonal().array() += 1e-6 * static_cast<double>(n);
-    rest = angle -
-           monomials * normal.ldlt().solve(monomials.transpose() * weights.cwiseProduct(angle));
-  }
-  const double mean = rest.cwiseAbs().cwiseMin(1.0).mean();
-  return std::isfinite(mean) ? mean : 1.0;
-}
-
-bool RayPattern::isSensor(const Eigen::Vector3d& place) const {
-  // Of sensors up to 0.09, also in coarse steps of depth; from elsewhere, and of objects, from 0.15
-  // on.
-  constexpr double max_unevenness = 0.12;
-  // Of sensors up to 0.34; more if the points are evenly spread over the surface itself.
-  constexpr double max_of_spread = 0.5;
-  return unevenness(place, true) < std::min(max_unevenness, max_of_spread * spread_) ||
-         isSpreadFrom(place);
-}
-
-bool RayPattern::isSpreadFrom(const Eigen::Vector3d& place) const {
-  // The slope of the logarithms is 1 to 1.4 of scanners, and -0.9 to 0.3 of objects.
-  constexpr double min_correlation = 0.8;
-  const Eigen::ArrayXd distance =
-      (points_.colwise() - place).colwise().norm().array().log().transpose();
-  const Eigen::ArrayXd x = distance - distance.mean();
-  const Eigen::ArrayXd y = spacing_.array() - spacing_.mean();
-  const double common = (x * y).sum();
-  const double slope = common / x.square().sum();
-  return slope > 0.5 && slope < 2.0 &&
-         common > min_correlation * std::sqrt(x.square().sum() * y.square().sum());
-}
-
-/// The middle of the points with the least spacing.
-Eigen::Vector3d RayPattern::densest() const {
-  constexpr Eigen::Index part_of = 50;
-  std::vector<Index> order = firstIndices(columnCount(points_));
-  const Eigen::Index part = points_.cols() / part_of + 1;
-  std::partial_sort(order.begin(), order.begin() + part, order.end(), [&](Index a, Index b) {
-    return std::pair(spacing_[a], a) < std::pair(spacing_[b], b);
-  });
-  order.resize(static_cast<std::size_t>(part));
-  return points_(Eigen::all, order).rowwise().mean();
-}
-
-std::optional<Eigen::Vector3d> RayPattern::find() const {
-  constexpr int directions = 50;
-  constexpr std::size_t kept = 1;
-  constexpr double first_step = 0.2;
-  constexpr double coarse_step = 0.01;
-  constexpr double least_step = 5e-4;
-  constexpr int most_moves = 10;
-  const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
-  const Eigen::Vector3d middle = middleOf(points_);
-  const double extent = (points_.rowwise().maxCoeff() - points_.rowwise().minCoeff()).norm();
-  std::vector<std::pair<double, Eigen::Vector3d>> places;
-  for (const double radii : {0.3, 0.6, 1.2, 2.5})
-    for (const Eigen::Vector3d& direction : spreadDirections(directions)) {
-      const Eigen::Vector3d place = middle + radii * extent * direction;
-      places.emplace_back(unevenness(place, false), place);
-    }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  // A scanner within the points is near where they are densest, in a narrow valley of the cost.
-  places.resize(kept);
-  places.emplace_back(0.0, densest());
-  double least = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d best = middle;
-  for (auto& [cost, place] : places) {
-    for (const bool is_quadratic : {false, true}) {
-      const double found =
-          descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); }, axes,
-                  first_step * extent, (is_quadratic ? least_step : coarse_step) * extent,
-                  most_moves, place);
-      if (is_quadratic && found < least) {
-        least = found;
-        best = place;
-      }
-    }
-  }
-  return isSensor(best) ? std::optional(best) : std::nullopt;
-}
-
 bool isElevationGrid(const Positions& points) {
   constexpr std::size_t min_lines = 10;
   std::array<std::vector<double>, 2> lines;
@@ -290,8 +105,7 @@ bool isElevationGrid(const Positions& points) {
 Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis) {
   // So far that rays are parallel within a thousandth, and so near that directions differ.
   constexpr double extents = 1024.0;
-  const double extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
-  return middleOf(points) + extents * extent * axis.normalized();
+  return middleOf(points) + extents * extentOf(points) * axis.normalized();
 }
 
 namespace {
@@ -373,7 +187,7 @@ private:
   /// The place nearby from which the depth jumps least.
   Eigen::Vector3d refined(Eigen::Vector3d place) {
     constexpr int most_moves = 4;
-    const double extent = (points_.rowwise().maxCoeff() - points_.rowwise().minCoeff()).norm();
+    const double extent = extentOf(points_);
     const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
     double least = 1.0;
     std::vector<Index> window;

@@ -36,33 +36,6 @@ struct Sight {
 /// \param view    of these points.
 Sight assessView(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view);
 
-/// What the sampling of a cloud tells of the sensor.
-class RayPattern {
-public:
-  /// \param points 3 x n, of an extent about 1.
-  /// \param search among them.
-  RayPattern(const Positions& points, const NeighborSearch& search);
-
-  /// Whether a sensor there saw the points: the angles between neighbouring rays hardly change, or
-  /// the spacing grows with the distance.
-  bool isSensor(const Eigen::Vector3d& place) const;
-  /// Whether the spacing grows with the distance from a place, as it does not on objects around it.
-  bool isSpreadFrom(const Eigen::Vector3d& place) const;
-
-  /// The place from which the angles between neighbouring rays change least; none if they change
-  /// too much.
-  std::optional<Eigen::Vector3d> find() const;
-
-private:
-  double unevenness(const Eigen::Vector3d& place, bool is_quadratic) const;
-  Eigen::Vector3d densest() const;
-
-  Positions points_;  ///< some of them
-  Positions nearest_;
-  Eigen::VectorXd spacing_;  ///< logarithms
-  double spread_ = 0.0;      ///< mean deviation of the logarithm of the nearest distance
-};
-
 /// The mesh of a cloud from the first of some places that sees one layer.
 struct FoundView {
   ViewMesh mesh;

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Every so many points of a cloud, at most a number of them.
+inline std::vector<Index> sampleOf(const Positions& points, Eigen::Index most) {
+  const Eigen::Index n = std::min(points.cols(), most);
+  std::vector<Index> sample;
+  for (Eigen::Index i = 0; i < n; ++i)
+    sample.push_back(static_cast<Index>(i * points.cols() / n));
+  return sample;
+}
+
+/// The middle of the box around points.
+inline Eigen::Vector3d middleOf(const Positions& points) {
+  return (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2.0;
+}
+
+/// The diagonal of the box around points.
+inline double extentOf(const Positions& points) {
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
+/// Axes of the spread of points, the shortest first, and their variances.
+inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Positions& points) {
+  const Positions centered = points.colwise() - points.rowwise().mean();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+      Eigen::Matrix3d(centered * centered.transpose()));
+}
+
+/// Moves a place along axes while a cost falls, with shorter and shorter steps.
+///
+/// \param most_moves with each step.
+/// \return the cost there.
+template <typename Cost>
+double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double least_step,
+               int most_moves, Eigen::Vector3d& place) {
+  double best = cost(place);
+  for (; step > least_step; step /= 2.0)
+    for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < most_moves;) {
+      const Eigen::Vector3d other = place + (k % 2 == 0 ? step : -step) * axes.col(k / 2);
+      if (const double found = cost(other); found < best) {
+        best = found;
+        place = other;
+        failed = 0;
+        ++moves;
+      } else {
+        k = (k + 1) % 6;
+        ++failed;
+      }
+    }
+  return best;
+}
+
+}  // namespace spherical_param::internal
