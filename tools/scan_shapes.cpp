@@ -160,6 +160,16 @@ Vector3d project(Vector3d p, const Distance& distance) {
   return p;
 }
 
+/// A shape of another size at another place, turned about z [rad].
+Distance placed(const std::string& name, const Vector3d& center, double size, double turn) {
+  const Eigen::Matrix3d axes = Eigen::AngleAxisd(-turn, Vector3d::UnitZ()).toRotationMatrix();
+  return [=, &distance = findShape(name).distance](const Vector3d& p) {
+    const Vector3d offset = (p - center) / size;
+    const double away = offset.norm() - 0.8;  // no shape is larger
+    return size * (away > 0.2 ? away : distance(axes * offset));
+  };
+}
+
 /// Calls work(i) for each i in [0, count), on several threads.
 void forEach(std::size_t count, const std::function<void(Index)>& work) {
   internal::forEachIndex(count, internal::threadCount(0, count), {}, work);
@@ -292,6 +302,33 @@ const std::vector<Shape>& allShapes() {
   return shapes;
 }
 
+const Shape& deskScene() {
+  // Of the room: z up, x away from the camera, the top of the desk at z = 0.
+  const Distance room =
+      [=,
+       objects = body({{box({0.0, 0.0, -0.02}, {0.40, 0.52, 0.02}, 0.005)},
+                       {placed("head", {0.12, -0.22, 0.19}, 0.38, 2.8)},
+                       {placed("animal", {-0.12, 0.13, 0.157}, 0.35, 4.0)},
+                       {box({0.10, 0.30, 0.02}, {0.11, 0.15, 0.02}, 0.004)},
+                       {box({0.12, 0.28, 0.055}, {0.09, 0.13, 0.015}, 0.004)},
+                       {ball({0.12, 0.26, 0.14}, 0.07)}}),
+       mug = body(
+           {{cone({-0.22, -0.18, 0.04}, 0.04, {-0.22, -0.18, 0.1}, 0.039)},
+            {arc({-0.22, -0.22, 0.07}, -Vector3d::UnitY(), Vector3d::UnitZ(), 0.027, 0.007, 1.7)},
+            {cone({-0.22, -0.18, 0.045}, 0.034, {-0.22, -0.18, 0.3}, 0.033), 0.0, carved}})](
+          const Vector3d& p) {
+        return std::min({objects(p), mug(p), 0.52 - p.x(), 0.72 + p.z()});
+      };
+  const Vector3d camera(-0.70, 0.08, 0.50);
+  Eigen::Matrix3d axes;  // of the camera, in the room
+  axes.col(2) = (Vector3d(0.06, 0.02, 0.06) - camera).normalized();
+  axes.col(0) = axes.col(2).cross(Vector3d::UnitZ()).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  static const Shape scene = {"desk", "what a depth camera sees of a desk, in its frame",
+                              [=](const Vector3d& p) { return room(camera + axes * p); }};
+  return scene;
+}
+
 // Surface nets (Gibson 1998, "Constrained elastic surface nets"): a vertex in each cube of a
 // lattice that the surface cuts, and two triangles around each edge that it cuts. The mesh is not
 // manifold if the surface passes a cube twice. The lattice lies so that this does not happen at 256
@@ -384,7 +421,41 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
   return mesh;
 }
 
+namespace {
+
+/// One point for each ray of a depth camera. Sphere tracing (J. C. Hart, 1996).
+Scan depthImage(const Distance& distance, const ScanOptions& options) {
+  constexpr double focal_length = 0.95;  // of widths
+  constexpr int most_steps = 2000;
+  const auto count = static_cast<double>(options.points);
+  const double width = std::max(2.0, std::round(std::sqrt(count * 4.0 / 3.0)));
+  const double height = std::ceil(count / width);
+  const auto n = static_cast<Eigen::Index>(options.points);
+  Scan scan = {Positions(3, n), Positions(3, n)};
+  forEach(options.points, [&](std::size_t i) {
+    const double row = std::floor(static_cast<double>(i) / width);
+    const double column = static_cast<double>(i) - row * width;
+    const Vector3d ray(column + 0.5 - width / 2.0, row + 0.5 - height / 2.0, focal_length * width);
+    Vector3d p = 0.2 * ray.normalized();
+    double value = distance(p);
+    for (int step = 0; step < most_steps && value > 1e-7; ++step) {
+      p += 0.7 * value * ray.normalized();  // because it is not quite the distance
+      value = distance(p);
+    }
+    scan.points.col(static_cast<Eigen::Index>(i)) = p;
+    scan.normals.col(static_cast<Eigen::Index>(i)) = gradientAt(p, distance).normalized();
+  });
+  std::mt19937_64 random(options.seed);
+  for (auto p : scan.points.colwise())
+    p *= 1.0 + options.noise * (2.0 * uniform(random) - 1.0) / (focal_length * width);
+  return scan;
+}
+
+}  // namespace
+
 Scan generateScan(const ScanOptions& options) {
+  if (options.shape == deskScene().name)
+    return depthImage(deskScene().distance, options);
   const TruthMesh mesh = referenceMesh(options.shape, 128);
   const auto corner = [&](Eigen::Index t, int k) -> Vector3d {
     return mesh.vertices.col(mesh.triangles(k, t));

@@ -25,13 +25,18 @@ struct Shape {
 
 const std::vector<Shape>& allShapes();
 
+/// A desk with objects on it, in a room, which a depth camera at the origin sees: it looks along z,
+/// y points down, lengths are in metres. No surface to scan all around, so not one of allShapes().
+const Shape& deskScene();
+
 inline constexpr std::size_t kMaxScanPoints = 10'000'000;
 
 struct ScanOptions {
-  std::string shape = "head";  ///< name of a shape
+  std::string shape = "head";  ///< name of a shape, or of the scene
   std::size_t points = 5000;   ///< 4 ... kMaxScanPoints
   /// Half the width of the uniform noise along the normal, relative to a point's mean distance to
-  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100.
+  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100. Of the scene: along the ray,
+  /// relative to the distance of neighbouring rays at the point.
   double noise = 0.0;
   std::uint64_t seed = 1;
 };
@@ -41,8 +46,9 @@ struct Scan {
   Positions normals;  ///< 3 x n, unit, outward, without noise
 };
 
-/// Points spread evenly over a shape, at random (blue noise). Scans that differ in their noise only
-/// move the same points. \throw InvalidInput if there is no such shape.
+/// Points spread evenly over a shape, at random (blue noise), or those of a depth image of the
+/// scene: one for each ray, row by row, on an even grid of 4 x 3. Scans that differ in their noise
+/// only move the same points. \throw InvalidInput if there is no such shape.
 Scan generateScan(const ScanOptions& options);
 
 /// The surface a scan is taken from.

@@ -25,12 +25,13 @@ using namespace spherical_param::tools;
 ToolText toolText() {
   return {"pcl_spherical_param_scan",
           "SHAPE output",
-          "Writes points that are spread evenly over a generated surface.\n"
-          "  SHAPE:  a shape or preset, see -list\n  output: " +
+          "Writes points that are spread evenly over a generated surface, or a depth image.\n"
+          "  SHAPE:  a shape, scene or preset, see -list\n  output: " +
               extensionsFor(FileUse::WriteCloud) + "\n",
           {{"A scan of a hand to try the other tools on", "hand scan.ply"},
            {"A noisy one of another size, and the surface that it comes from",
-            "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"}},
+            "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
+           {"What a depth camera sees of a desk", "desk depth.ply"}},
           "0 done, 1 failed, 2 wrong usage."};
 }
 
@@ -43,15 +44,20 @@ struct Settings {
 };
 
 OptionTable optionsOf(Settings& settings) {
-  return {numberOption("points", "number of points, if no preset says it", settings.scan.points, 4,
-                       kMaxScanPoints),
-          numberOption("noise", "noise along the normal, relative to the distance of neighbours",
+  return {numberOption("points",
+                       "number of points; if not given, that of a preset or of a depth image",
+                       settings.scan.points, 4, kMaxScanPoints),
+          numberOption("noise",
+                       "noise along the normal or the ray, relative to the distance of neighbours",
                        settings.scan.noise, 0, 100),
           numberOption("seed", "seed of the random placement", settings.scan.seed, 0, 1e15),
           flagOption("normals", "write the normals of the surface, too", settings.normals),
           fileOption("truth", "write a fine mesh of the surface", settings.truth),
           flagOption("list", "list the shapes and presets", settings.list)};
 }
+
+/// Of the depth image, unless the command line says it: 320 x 240.
+constexpr std::size_t kDepthPoints = 76800;
 
 /// Of the paper's scans: the shape that stands for each, and its points in Table 1.
 const std::map<std::string, std::pair<std::string, std::size_t>> presets = {
@@ -64,6 +70,7 @@ std::string listText() {
   std::string text = "Shapes:\n";
   for (const Shape& shape : allShapes())
     text += line(shape.name, shape.description);
+  text += "Scene:\n" + line(deskScene().name, deskScene().description);
   text += "Presets:\n";
   for (const auto& [name, preset] : presets)
     text += line(name, "the shape " + preset.first + " in place of the paper's scan (" +
@@ -87,11 +94,15 @@ void parse(const std::string& name, const CommandLine& command_line, Settings& s
   scan.shape = lowerCase(name);
   if (const auto preset = presets.find(scan.shape); preset != presets.end())
     std::tie(scan.shape, scan.points) = preset->second;
-  if (std::none_of(allShapes().begin(), allShapes().end(),
-                   [&](const Shape& shape) { return shape.name == scan.shape; }))
+  if (scan.shape == deskScene().name)
+    scan.points = kDepthPoints;
+  else if (std::none_of(allShapes().begin(), allShapes().end(),
+                        [&](const Shape& shape) { return shape.name == scan.shape; }))
     throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + toolText().name + " -list' for the shapes");
   command_line.apply(optionsOf(settings));
+  if (scan.shape == deskScene().name && !settings.truth.empty())
+    throw UsageError("there is no true mesh of a scene", "leave -truth out");
 }
 
 void run(const CommandLine& command_line, Settings& settings) {

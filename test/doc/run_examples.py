@@ -9,7 +9,7 @@ the cmake block after it. A python block is a script.
 
 The examples of a page run one after the other in a scratch folder, which has scan.ply (a hand of
 4,000 points), scan.xyz (the same as text), head.ply and animal.ply (2,000 points each), and what
-earlier examples of the page left there; and depth.pcd, what a depth camera sees of a person in a room.
+earlier examples of the page left there.
 """
 
 import os
@@ -19,14 +19,12 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 MARK = re.compile(r"^<!-- test -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?(?:\n*```cmake\n(?P<project>.*?)^```$)?",
                   re.MULTILINE | re.DOTALL)  # fmt: skip
 SCANS = """pcl_spherical_param_scan hand scan.ply -points 4000
 pcl_spherical_param_scan hand scan.xyz -points 4000
 pcl_spherical_param_scan head head.ply -points 2000
 pcl_spherical_param_scan animal animal.ply -points 2000
-{depth_image} depth.pcd
 """
 
 
@@ -60,7 +58,6 @@ def run_example(language, text, project, folder, number, prefix):
 def main(prefix, module_folder, *pages):
     os.environ["PATH"] = f"{prefix}/bin:{os.environ['PATH']}"
     os.environ["PYTHONPATH"] = module_folder
-    scans = SCANS.format(depth_image=ROOT / "test/doc/depth_image.py")
     passed = failed = 0
     for page in pages:
         with tempfile.TemporaryDirectory() as name:
@@ -69,7 +66,7 @@ def main(prefix, module_folder, *pages):
                 place = f"{page}:{text.count(chr(10), 0, mark.start()) + 1}"
                 if mark["language"] not in ("sh", "cpp", "python"):
                     sys.exit(f"{place}: no block of sh, cpp or python follows the mark")
-                good = (number > 0 or run(["bash", "-ec", scans], folder)) and run_example(
+                good = (number > 0 or run(["bash", "-ec", SCANS], folder)) and run_example(
                     mark["language"], mark["text"], mark["project"], folder, number, prefix)
                 print(f"{place}: {'passed' if good else 'FAILED'}", flush=True)
                 passed, failed = passed + bool(good), failed + (not good)

@@ -48,7 +48,7 @@ class Scan(ToolTest):
         self.assertAlmostEqual((relative**2).mean(), 1 / 3, delta=5 * (4 / 45 / 1000) ** 0.5)
 
     def test_every_shape_is_covered_evenly_and_has_a_true_mesh_of_its_topology(self):
-        shapes, presets = run("scan", "-list").split("Presets:")
+        shapes, presets = re.split("Scene:.*Presets:", run("scan", "-list"), flags=re.DOTALL)
         for size in ("19818", "52809", "134345"):  # of Table 1 of the paper
             self.assertIn(size, presets)
         names = re.findall(r"^  (\w+) ", shapes, re.MULTILINE)
@@ -86,6 +86,31 @@ class Scan(ToolTest):
         self.assertLess(np.abs(np.linalg.norm(normals, axis=1) - 1).max(), 1e-6)
         self.assertGreater(np.median((normals * true[at]).sum(axis=1)), 0.99)
         self.assertGreater(((normals * true[at]).sum(axis=1) > 0).mean(), 0.98)
+
+    def test_a_depth_image_has_a_point_on_each_ray_of_an_even_grid(self):
+        width, height = 160, 120
+        points, normals = scan("desk", width * height)
+        rays = (points[:, :2] / points[:, 2:]).reshape(height, width, 2)
+        step = np.ptp(rays[0, :, 0]) / (width - 1)
+        self.assertLess(np.abs(np.diff(rays[:, :, 0], axis=1) - step).max(), 1e-5)  # single precision
+        self.assertLess(np.abs(np.diff(rays[:, :, 1], axis=0) - step).max(), 1e-5)
+        self.assertLess(np.abs(rays.mean(axis=(0, 1))).max(), 1e-5)  # the camera looks along z
+        self.assertTrue(((0.2 < points[:, 2]) & (points[:, 2] < 2)).all())
+        self.assertGreater(((points * normals).sum(axis=1) < 0).mean(), 0.999)  # they face the camera
+
+    def test_the_noise_of_a_depth_image_is_along_its_rays(self):
+        (clean, _), (noisy, _) = scan("desk", 4800), scan("desk", 4800, "-noise", 0.5)
+        factors = (noisy / clean).mean(axis=1)
+        self.assertLess(np.abs(noisy - factors[:, None] * clean).max(), 1e-6)
+        step = np.diff(clean[:2, 0] / clean[:2, 2])[0]
+        self.assertLess(np.abs(factors - 1).max(), 0.5 * step * 1.01)
+        self.assertGreater(np.abs(factors - 1).max(), 0.5 * step * 0.98)
+
+    def test_a_depth_image_is_seen_from_one_place(self):
+        run("scan", "desk", "out.ply")
+        verdict = run("reconstruction", "out.ply", "mesh.ply")
+        self.assertRegex(verdict, r"76,800 points\nverdict   Seen from one place: \d surfaces with openings, all sound")
+        self.assertGreater(len(read_ply("mesh.ply")[0]), 0.99 * 76800)
 
     def test_every_format_holds_points_and_normals(self):
         for extension in ("pcd", "ply", "obj", "xyz", "txt"):
