@@ -384,7 +384,6 @@ enum class ViewSource {
   Origin,  ///< the origin of the coordinates
   Above,   ///< far away along the shortest side of a low sheet, or along z
   Rays,    ///< the points lie on an even pattern of rays from there
-  Search,  ///< the parallel view of one layer
 };
 
 /// The place from which a cloud is seen as one layer.

@@ -49,8 +49,8 @@ constexpr std::array<const char*, 4> namesOf(FacedBy) {
   return {"normals", "viewpoint", "up", "outward"};
 }
 /// \copydoc namesOf(SurfaceKind)
-constexpr std::array<const char*, 5> namesOf(ViewSource) {
-  return {"given", "origin", "above", "rays", "search"};
+constexpr std::array<const char*, 4> namesOf(ViewSource) {
+  return {"given", "origin", "above", "rays"};
 }
 /// \copydoc namesOf(SurfaceKind)
 constexpr std::array<const char*, 5> namesOf(StopReason) {

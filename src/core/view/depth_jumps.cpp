@@ -260,7 +260,9 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
     }
     gap.area = twice.norm() / 2.0;
     // Of one with several loops, surfaces of different depth are on its sides.
-    const bool is_small = edges <= small_gap && length <= 2.0 * small_gap;
+    // A point inside would be a spike: it may be far behind.
+    const bool is_small = edges <= small_gap && length <= 2.0 * small_gap &&
+                          gap.triangles.size() + 2 == edges;
     if (gap.loop.size() != edges || !(is_small || edges <= most_edges || gap.area <= most_area))
       continue;
     for (const Index t : gap.triangles)

@@ -38,7 +38,7 @@ struct Gap {
 };
 
 /// Fills the gaps whose loops have at most a number of edges or an area, with the triangles that
-/// were opened there. Those of up to 8 short edges, which noise and single missing points make, are
+/// were opened there. Those of up to 8 short edges without a point inside, which noise and single missing points make, are
 /// filled in any case.
 ///
 /// \return the other ones that were filled.
