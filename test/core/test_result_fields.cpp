@@ -12,7 +12,9 @@ namespace {
 /// Becomes any struct or class.
 struct AnyClass {
   template <typename T, std::enable_if_t<std::is_class_v<T>, int> = 0>
-  operator T() const;  // NOLINT(google-explicit-constructor): that is its purpose
+  operator T() const {  // NOLINT(google-explicit-constructor): that is its purpose
+    return {};
+  }
 };
 
 /// Becomes any number, flag or enumerator.
