@@ -53,8 +53,8 @@ public:
     report(0.0);
   }
 
-  /// Notes that the part has a mesh: the limit no longer ends its work with OutOfTime.
-  void noteMesh() { has_mesh_ = true; }
+  /// Notes whether the part has a mesh: then the limit no longer ends its work with OutOfTime.
+  void noteMesh(bool has_mesh = true) { has_mesh_ = has_mesh; }
 
   /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
   /// points_fraction of all points.

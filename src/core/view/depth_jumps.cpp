@@ -20,14 +20,13 @@ namespace {
 /// How long the sides of a surface may be, in spacings.
 struct Rule {
   double along;           ///< the rays
-  double across;          ///< them
+  double across;          ///< them, where wider ones are over gaps
   bool goes_straight_on;  ///< longer ones are no jumps where the surface goes straight on
 };
 
-// Of 4, 6 and 8 times, 4 is truest on five scans with truth (the RMS of a jaw is 0.027 % of its
-// size, with 6 times 0.037 %); with 4 times across the rays, 1 to 2 % of the points of terrain fall
-// off in small pieces.
-constexpr Rule kRule{4.0, 8.0, false};
+// Of 4, 6 and 8 times along the rays, 4 is truest on scans with truth (the RMS of a jaw is 0.027 %
+// of its size, with 6 times 0.037 %).
+constexpr Rule kRule{4.0, 6.0, false};
 // With the rule above for rims and gaps, too, 10 times as many points of a depth image and 2 % more
 // of airborne data are left out.
 constexpr Rule kMildRule{6.0, 8.0, true};
@@ -216,10 +215,7 @@ OpenMesh openJumps(const Positions& points, const Indexed<double>& spacing, cons
 }
 
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
-                          const ViewMesh& view, std::size_t most_edges, double most_area,
-                          OpenMesh& open) {
-  // Of a depth image of 242,749 points 3,071 openings become 185, and its surfaces stay apart.
-  constexpr std::size_t small_gap = 8;
+                          const ViewMesh& view, const GapLimits& most, OpenMesh& open) {
   std::vector<Gap> filled;
   const SphereMesh mesh(open.triangles, columnCount(points) + 1);
   IndexSet seen(mesh.slotCount());
@@ -261,9 +257,9 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
     gap.area = twice.norm() / 2.0;
     // Of one with several loops, surfaces of different depth are on its sides.
     // A point inside would be a spike: it may be far behind.
-    const bool is_small = edges <= small_gap && length <= 2.0 * small_gap &&
+    const bool is_small = edges <= most.small && length <= 2.0 * static_cast<double>(most.small) &&
                           gap.triangles.size() + 2 == edges;
-    if (gap.loop.size() != edges || !(is_small || edges <= most_edges || gap.area <= most_area))
+    if (gap.loop.size() != edges || !(is_small || edges <= most.edges || gap.area <= most.area))
       continue;
     for (const Index t : gap.triangles)
       open.is_open[t] = 0;

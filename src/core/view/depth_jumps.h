@@ -16,12 +16,12 @@ namespace spherical_param::internal {
 Indexed<double> spacingOf(const Positions& points, const Execution& execution);
 
 /// Opens the mesh of a view where the depth jumps: at sides that are longer than 4 times the
-/// smaller spacing of their ends (8 times, if they run more across the rays than along them), or
+/// smaller spacing of their ends (6 times, if they run more across the rays than along them), or
 /// within 5 degrees of the ray and longer than that spacing. What is left is an oriented manifold
 /// with boundary.
 ///
 /// Of points that would be in no piece of `min_points` points, and in narrow gaps between surfaces
-/// that meet in one point, the rule is milder: 6 times, and sides at which the surface goes
+/// that meet in one point, the rule is milder: 6 and 8 times, and sides at which the surface goes
 /// straight on at both ends are no jumps. So the rims of scans, which are sampled sparsely, stay.
 ///
 /// \param points  3 x n.
@@ -37,13 +37,17 @@ struct Gap {
   double area = 0.0;             ///< length of the vector area of the loop
 };
 
-/// Fills the gaps whose loops have at most a number of edges or an area, with the triangles that
-/// were opened there. Those of up to 8 short edges without a point inside, which noise and single missing points make, are
-/// filled in any case.
+/// Which gaps are filled.
+struct GapLimits {
+  std::size_t small = 0;  ///< edges of gaps that noise makes: short, and without points inside
+  std::size_t edges = 0;  ///< of any gaps
+  double area = 0.0;      ///< of any gaps
+};
+
+/// Fills gaps with the triangles that were opened there.
 ///
-/// \return the other ones that were filled.
+/// \return those that are filled for their edges or area.
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
-                          const ViewMesh& view, std::size_t most_edges, double most_area,
-                          OpenMesh& open);
+                          const ViewMesh& view, const GapLimits& most, OpenMesh& open);
 
 }  // namespace spherical_param::internal

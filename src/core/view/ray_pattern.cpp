@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -122,7 +123,6 @@ Eigen::Vector3d RayPattern::densest() const {
 
 std::optional<Eigen::Vector3d> RayPattern::find() const {
   constexpr int directions = 50;
-  constexpr std::size_t kept = 1;
   constexpr double first_step = 0.2;
   constexpr double coarse_step = 0.01;
   constexpr double least_step = 5e-4;
@@ -130,20 +130,20 @@ std::optional<Eigen::Vector3d> RayPattern::find() const {
   const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
   const Eigen::Vector3d middle = middleOf(points_);
   const double extent = extentOf(points_);
-  std::vector<std::pair<double, Eigen::Vector3d>> places;
+  // A scanner within the points is near where they are densest, in a narrow valley of the cost.
+  std::array<Eigen::Vector3d, 2> starts = {densest(), middle};
+  double least_cost = std::numeric_limits<double>::infinity();
   for (const double radii : {0.3, 0.6, 1.2, 2.5})
     for (const Eigen::Vector3d& direction : spreadDirections(directions)) {
       const Eigen::Vector3d place = middle + radii * extent * direction;
-      places.emplace_back(unevenness(place, false), place);
+      if (const double cost = unevenness(place, false); cost < least_cost) {
+        least_cost = cost;
+        starts[1] = place;
+      }
     }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  // A scanner within the points is near where they are densest, in a narrow valley of the cost.
-  places.resize(kept);
-  places.emplace_back(0.0, densest());
   double least = std::numeric_limits<double>::infinity();
   Eigen::Vector3d best = middle;
-  for (auto& [cost, place] : places) {
+  for (Eigen::Vector3d& place : starts) {
     for (const bool is_quadratic : {false, true}) {
       const double found =
           descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); }, axes,

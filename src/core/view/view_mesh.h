@@ -16,7 +16,8 @@ namespace spherical_param::internal {
 /// hides exactly, and perhaps over one vertex more.
 ///
 /// No two of its triangles intersect, whatever the points. Seen from the place, the corners of each
-/// triangle are counter-clockwise, by the exact sign of a determinant. So the map to the sphere
+/// triangle are counter-clockwise, by the exact sign of a determinant, which is checked for all of
+/// them, and for both of each flip. So the map to the sphere
 /// around the place, x -> (x - place) / |x - place|, takes each triangle to a spherical triangle,
 /// one to one, and the triangles around an edge to both sides of its image. It is a covering
 /// outside of the vertices, with as many sheets over all directions; the triangles over one of them

@@ -98,8 +98,14 @@ bool isElevationGrid(const Positions& points) {
     lines[static_cast<std::size_t>(k)].assign(row.begin(), row.end());
     sortUnique(lines[static_cast<std::size_t>(k)]);
   }
-  return std::min(lines[0].size(), lines[1].size()) >= min_lines &&
-         lines[0].size() * lines[1].size() <= 2 * columnCount(points);
+  if (std::min(lines[0].size(), lines[1].size()) < min_lines ||
+      lines[0].size() * lines[1].size() > 2 * columnCount(points))
+    return false;
+  std::vector<std::pair<double, double>> places;
+  for (const auto& point : points.colwise())
+    places.emplace_back(point.x(), point.y());
+  sortUnique(places);
+  return places.size() == columnCount(points);
 }
 
 Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis) {
@@ -126,21 +132,20 @@ class Searcher {
 public:
   Searcher(const Positions& points, const Execution& execution)
       : points_(points), execution_(execution), report_(reportOf(execution, "view")),
-        search_(makeNeighborSearch(points, execution)) {}
+        pattern_(points, makeNeighborSearch(points, execution)) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
     // Smaller clouds are meshed so fast that a look or a search does not pay.
     constexpr Eigen::Index min_points = 1000;
     constexpr Eigen::Index min_of_sheet = 5000;
     constexpr Eigen::Index min_searched = 20000;
-    if (!viewpoint.isZero(0.0))
-      if (auto found = from(viewpoint, ViewSource::Given))
-        return found;
     reportFraction(report_, 0.0);
     if (points_.cols() < min_points)
       return std::nullopt;
-    const RayPattern pattern(points_, search_);
-    if (pattern.isSensor(Eigen::Vector3d::Zero()))
+    if (!viewpoint.isZero(0.0))
+      if (auto found = from(viewpoint, ViewSource::Given))
+        return found;
+    if (pattern_.isSensor(Eigen::Vector3d::Zero()))
       if (auto found = from(Eigen::Vector3d::Zero(), ViewSource::Origin))
         return found;
     if (points_.cols() < min_of_sheet)
@@ -148,7 +153,7 @@ public:
     if (isElevationGrid(points_))
       return from(farAbove(points_, Eigen::Vector3d::UnitZ()), ViewSource::Above);
     if (points_.cols() >= min_searched)
-      if (const auto place = pattern.find())
+      if (const auto place = pattern_.find())
         if (auto found = from(refined(*place), ViewSource::Rays))
           return found;
     const auto axis = axisOfSheet(points_);
@@ -169,12 +174,11 @@ private:
     }
     FoundView found{triangulateView(points_, place, report_), source};
     const Sight sight = assessView(points_, spacing(), found.mesh);
-    // All around a place without a sensor is an object that may fold, unless nothing jumps; below
+    // All around a place without a sensor is an object that may fold, unless nothing jumps; before
     // one may be two layers.
     const bool is_whole = source == ViewSource::Given && sight.jumps == 0.0;
-    const bool is_doubtful = sight.is_around
-                                 ? !is_whole && !RayPattern(points_, search_).isSpreadFrom(place)
-                                 : source == ViewSource::Above && sight.isRough();
+    const bool is_doubtful = sight.is_around ? !is_whole && !pattern_.isSpreadFrom(place)
+                                             : sight.isRough() && !pattern_.isSensor(place);
     return sight.isOneLayer() && !is_doubtful ? std::optional(std::move(found)) : std::nullopt;
   }
 
@@ -250,7 +254,7 @@ private:
   const Positions& points_;
   const Execution& execution_;
   FractionReport report_;
-  NeighborSearch search_;
+  RayPattern pattern_;
   Indexed<double> spacing_;
 };
 

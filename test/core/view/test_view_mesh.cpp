@@ -71,6 +71,24 @@ TEST(ViewMesh, LeavesOutWhatIsHiddenExactly) {
   expectView(points, view);
 }
 
+TEST(ViewMesh, OfALatticeFromBetweenItsPointsDoesNotIntersectItself) {
+  // Most rays go through several points, or along planes of them.
+  const Positions lattice = cubeGrid(6);
+  for (const auto& [i, j] : {std::pair(0, 1), {0, 215}, {3, 100}, {40, 41}, {7, 210}}) {
+    const Eigen::Vector3d place = (lattice.col(i) + lattice.col(j)) / 2.0;
+    const ViewMesh view = triangulateView(lattice, place, {});
+    if (view.triangles.cols() > 0)
+      expectView(lattice, view);
+  }
+}
+
+TEST(ViewMesh, OfAFarPlaceIsNone) {
+  const Positions image = depthImage(12, 9, boxBeforeWall);
+  for (const double x : {1e15, 1e160, 1e308})
+    EXPECT_EQ(triangulateView(image, Eigen::Vector3d(x, 0.0, 0.0), {}).triangles.cols(), 0);
+  expectView(image, triangulateView(image, Eigen::Vector3d(0.0, 0.0, -1e6), {}));
+}
+
 TEST(ViewMesh, OfOnePlaneIsFromOutsideOfItAndOfALineThereIsNone) {
   Positions plane = randomCube(20, 5);
   plane.row(2).setZero();
