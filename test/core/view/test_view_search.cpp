@@ -64,7 +64,7 @@ TEST(ViewSearch, FindsNoneOfObjects) {
   EXPECT_FALSE(found(tube(40, 60)));
   // A file's viewpoint is no reason to open a closed surface, however thin.
   EXPECT_FALSE(found(spiralSphere(3000), Eigen::Vector3d(0.0, 0.0, 9.0)));
-  const Positions lens = Eigen::Vector3d(1.0, 1.0, 0.03).asDiagonal() * spiralSphere(3000);
+  const Positions lens = Eigen::Vector3d(1.0, 1.0, 0.08).asDiagonal() * spiralSphere(3000);
   EXPECT_FALSE(found(lens, Eigen::Vector3d(0.0, 0.0, 9.0)));
   // A second layer above a part of a sheet.
   const Positions sheet = terrain(6000);
