@@ -23,8 +23,7 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
     const ParameterInfo& info = parameters()[i];
     EXPECT_EQ(info.name, rows[i].name);
     // A parameter has one type: numbers beside names are texts, and any text may be given.
-    const bool is_mixed =
-        rows[i].is_point || (rows[i].is_number && !rows[i].choices.empty());
+    const bool is_mixed = rows[i].is_point || (rows[i].is_number && !rows[i].choices.empty());
     EXPECT_EQ(info.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
     EXPECT_EQ(info.min, is_mixed ? 0.0 : rows[i].optional ? kUnset : rows[i].min) << info.name;
     EXPECT_EQ(info.max, is_mixed ? 0.0 : rows[i].max) << info.name;

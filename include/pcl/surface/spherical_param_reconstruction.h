@@ -96,9 +96,9 @@ public:
   /** \brief Set where the cloud is seen from. One that a place sees as one layer, as a depth camera
    * or a scanner on a tripod does, is meshed by the directions from there: in a fraction of the
    * time, and without intersections. The mesh ends where the depth jumps.
-   * \param[in] mode default ViewMode::Auto: sensor_origin_ of the cloud, or a place that is searched
-   * for, if it sees one layer. None: no place. Up: far above.
-   * \note getResult().view has the place that was used. */
+   * \param[in] mode default ViewMode::Auto: sensor_origin_ of the cloud, or a place that is
+   * searched for, if it sees one layer. None: no place. Up: far above. \note getResult().view has
+   * the place that was used. */
   void setView(ViewMode mode) { options_.view = mode; }
   ViewMode getView() const { return options_.view; }  ///< As set. \return it
 
