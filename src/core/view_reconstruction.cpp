@@ -120,7 +120,7 @@ public:
         vertex_of_node_(columnCount(nodes.points), -1), number_of_(open.is_open.size(), -1) {
     if (!piece_of_.empty())
       surfaces_.resize(
-          static_cast<std::size_t>(*std::max_element(piece_of_.begin(), piece_of_.end()) + 1));
+          static_cast<std::size_t>(*std::max_element(piece_of_.begin(), piece_of_.end())) + 1);
   }
 
   /// \param inputs of the nodes, ascending.
@@ -243,6 +243,7 @@ private:
         loop.push_back(vertex_of_node_[node]);
       std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
       std::vector<Index> inputs;
+      inputs.reserve(loop.size());
       for (const Index vertex : loop)
         inputs.push_back(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
       Opening opening = openingOf(points, std::move(inputs));

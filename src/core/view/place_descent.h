@@ -43,7 +43,7 @@ template <typename Cost>
 double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double least_step,
                int most_moves, Eigen::Vector3d& place) {
   double best = cost(place);
-  for (; step > least_step; step /= 2.0)
+  while (step > least_step) {
     for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < most_moves;) {
       const Eigen::Vector3d other = place + (k % 2 == 0 ? step : -step) * axes.col(k / 2);
       if (const double found = cost(other); found < best) {
@@ -56,6 +56,8 @@ double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, doubl
         ++failed;
       }
     }
+    step /= 2.0;
+  }
   return best;
 }
 

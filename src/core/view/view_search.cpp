@@ -121,7 +121,7 @@ std::optional<Eigen::Vector3d> axisOfSheet(const Positions& points) {
   // Terrain has 0.05 to 0.21, objects from 0.28 on.
   constexpr double max_flatness = 0.25;
   const auto solver = axesOf(points);
-  const Eigen::Vector3d variances = solver.eigenvalues();
+  const Eigen::Vector3d& variances = solver.eigenvalues();
   if (!(variances[0] < max_flatness * max_flatness * variances[1]))
     return std::nullopt;
   const Eigen::Vector3d axis = solver.eigenvectors().col(0);
