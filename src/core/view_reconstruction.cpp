@@ -322,7 +322,8 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   for (const Surface& surface : surfaces)
     meshed += surface.inputs.size();
   // Less of a cloud is no view.
-  if (!isGiven(options) && options.parts == PartsMode::Each && 10 * meshed < 9 * inputs.size()) {
+  const bool is_small = options.parts == PartsMode::Each && 10 * meshed < 9 * inputs.size();
+  if (!isGiven(options) && (surfaces.empty() || is_small)) {
     clock.noteMesh(false);
     return false;
   }

@@ -185,10 +185,10 @@ Positions directionsFrom(const Eigen::Vector3d& place, const Positions& points) 
   Positions directions = points.colwise() - place;
   for (auto direction : directions.colwise()) {
     const double length = direction.stableNorm();
-    if (length == 0.0)
-      direction = Eigen::Vector3d::UnitZ();
-    else
+    if (length > 0.0 && std::isfinite(length))
       direction /= length;
+    else
+      direction = Eigen::Vector3d::UnitZ();
   }
   return directions;
 }

@@ -30,7 +30,7 @@ struct ViewMesh {
   std::vector<Index> hidden;  ///< points that are not in the mesh, ascending
 };
 
-/// Unit vectors from a place to points; +z to a point there.
+/// Unit vectors from a place to points; +z to a point there, or beyond the range of double.
 Positions directionsFrom(const Eigen::Vector3d& place, const Positions& points);
 
 /// The Delaunay triangulation of the directions from a place, which is moved a little if points
