@@ -51,7 +51,8 @@ std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& optio
   }
   const Eigen::Vector3d place = givenPlace(nodes.points, std::ldexp(1.0, nodes.exponent), options);
   FoundView view{triangulateView(nodes.points, place, reportOf(execution, "view")),
-                 options.view == ViewMode::Up ? ViewSource::Above : ViewSource::Given};
+                 options.view == ViewMode::Up ? ViewSource::Above : ViewSource::Given,
+                 spacingOf(nodes.points, execution)};
   if (view.mesh.triangles.cols() == 0)
     throw InvalidInput(
         "reconstruct: the view is too far away, or sees the points on one line or few rays; "
@@ -306,7 +307,8 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   const bool is_grid = view->source == ViewSource::Above && isElevationGrid(nodes.points);
   const Positions flat = is_grid ? withoutHeights(nodes.points) : Positions();
   const Positions& measured = is_grid ? flat : nodes.points;
-  const Indexed<double> spacing = spacingOf(measured, clock.execution());
+  const Indexed<double> spacing =
+      is_grid ? spacingOf(measured, clock.execution()) : std::move(view->spacing);
   OpenMesh open =
       openJumps(measured, spacing, view->mesh, static_cast<std::size_t>(options.min_points));
   // Of a depth image of 242,749 points 3,071 openings become 197, and its surfaces stay apart.

@@ -115,12 +115,7 @@ private:
 
   /// Judges the triangles of points in small pieces by the mild rule.
   void closeAtLoose(std::size_t min_points) {
-    UnionFind pieces(columnCount(points_));
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (!isOpen(t)) {
-        pieces.unite(mesh_.vertex(t, 0), mesh_.vertex(t, 1));
-        pieces.unite(mesh_.vertex(t, 0), mesh_.vertex(t, 2));
-      }
+    UnionFind pieces = piecesOf(surfaceOf({view_.triangles, is_open_}), columnCount(points_));
     const Partition partition(pieces);
     const auto is_loose = [&](Index v) {
       return v != view_.behind && partition.sizes[partition.of[v]] < min_points;
@@ -169,12 +164,12 @@ private:
     Fan best;
     double least = std::numeric_limits<double>::infinity();
     for (Fan& gap : fansAt(mesh_, is_open_, v, true)) {
-      const bool may_close = std::none_of(gap.begin(), gap.end(), [&](Index t) {
-        return was_closed[t] != 0 || isJumpAt(t, kMildRule);
-      });
+      if (std::any_of(gap.begin(), gap.end(),
+                      [&](Index t) { return was_closed[t] != 0 || isJumpAt(t, kMildRule); }))
+        continue;
       double width = 0.0;
       for (const Index t : gap)
-        width = std::max(width, may_close ? longestSide(t) : least);
+        width = std::max(width, longestSide(t));
       if (width < least) {
         least = width;
         best = std::move(gap);

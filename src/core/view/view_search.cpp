@@ -135,13 +135,10 @@ public:
         pattern_(points, makeNeighborSearch(points, execution)) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
-    // Smaller clouds are meshed so fast that a look or a search does not pay.
-    constexpr Eigen::Index min_points = 1000;
+    // Smaller clouds are meshed so fast that a search does not pay.
     constexpr Eigen::Index min_of_sheet = 5000;
     constexpr Eigen::Index min_searched = 20000;
     reportFraction(report_, 0.0);
-    if (points_.cols() < min_points)
-      return std::nullopt;
     if (!viewpoint.isZero(0.0))
       if (auto found = from(viewpoint, ViewSource::Given))
         return found;
@@ -172,14 +169,17 @@ private:
       if (!(sight.jumps < max_jumps))
         return std::nullopt;
     }
-    FoundView found{triangulateView(points_, place, report_), source};
+    FoundView found{triangulateView(points_, place, report_), source, {}};
     const Sight sight = assessView(points_, spacing(), found.mesh);
     // All around a place without a sensor is an object that may fold, unless nothing jumps; before
     // one may be two layers.
     const bool is_whole = source == ViewSource::Given && sight.jumps == 0.0;
     const bool is_doubtful = sight.is_around ? !is_whole && !pattern_.isSpreadFrom(place)
                                              : sight.isRough() && !pattern_.isSensor(place);
-    return sight.isOneLayer() && !is_doubtful ? std::optional(std::move(found)) : std::nullopt;
+    if (!sight.isOneLayer() || is_doubtful)
+      return std::nullopt;
+    found.spacing = std::move(spacing_);
+    return found;
   }
 
   const Indexed<double>& spacing() {
@@ -262,7 +262,9 @@ private:
 
 std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
                                   const Execution& execution) {
-  return Searcher(points, execution).run(viewpoint);
+  // Smaller clouds are meshed so fast that a look does not pay.
+  constexpr Eigen::Index min_points = 1000;
+  return points.cols() < min_points ? std::nullopt : Searcher(points, execution).run(viewpoint);
 }
 
 }  // namespace spherical_param::internal

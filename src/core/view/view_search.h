@@ -40,6 +40,7 @@ Sight assessView(const Positions& points, const Indexed<double>& spacing, const 
 struct FoundView {
   ViewMesh mesh;
   ViewSource source;
+  Indexed<double> spacing;  ///< of the points, \see spacingOf
 };
 
 /// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, far above a low
