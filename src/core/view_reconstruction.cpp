@@ -2,9 +2,9 @@
 
 #include "boundary_loops.h"
 #include "depth_jumps.h"
+#include "openings.h"
 #include "ordered_points.h"
 #include "orientation.h"
-#include "pi.h"
 #include "power_of_two.h"
 #include "selection.h"
 #include "spherical_param/errors.h"
@@ -67,24 +67,12 @@ Positions withoutHeights(const Positions& points) {
   return flat;
 }
 
-/// A boundary loop as an opening.
-Opening openingOf(const Positions& points, std::vector<Index> loop) {
-  Opening opening;
-  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
-  const auto count = static_cast<double>(loop.size());
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Eigen::Vector3d from = points.col(loop[i]) - points.col(loop[0]);
-    const Eigen::Vector3d to = points.col(loop[(i + 1) % loop.size()]) - points.col(loop[0]);
-    opening.boundary_length += (to - from).norm();
-    twice += from.cross(to);
-    opening.center += points.col(loop[i]) / count;
-  }
-  opening.area = twice.norm() / 2.0;
-  opening.spacing = opening.boundary_length / count;
-  opening.width =
-      std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
+/// A boundary loop as an opening, which it certainly is.
+Opening openingOf(const Positions& points, const Indexed<double>& spacing,
+                  std::vector<Index> loop) {
+  Opening opening = measured(points, spacing, std::move(loop));
   opening.certainty = 1.0;
-  opening.loop = std::move(loop);
+  opening.is_flat = false;
   return opening;
 }
 
@@ -114,9 +102,10 @@ Indexed<Index> numberPieces(const Triangles& triangles, std::size_t nodes, const
 /// Makes surfaces of a mesh that is open at jumps.
 class SurfaceMaker {
 public:
-  SurfaceMaker(const OrderedPoints& nodes, const ViewMesh& view, const OpenMesh& open,
-               const Options& options)
-      : nodes_(nodes), view_(view), open_(open), options_(options),
+  /// \param spacing of the nodes.
+  SurfaceMaker(const OrderedPoints& nodes, const Indexed<double>& spacing, const ViewMesh& view,
+               const OpenMesh& open, const Options& options)
+      : nodes_(nodes), spacing_(spacing), view_(view), open_(open), options_(options),
         piece_of_(numberPieces(surfaceOf(open), columnCount(nodes.points), options)),
         vertex_of_node_(columnCount(nodes.points), -1), number_of_(open.is_open.size(), -1) {
     if (!piece_of_.empty())
@@ -131,13 +120,15 @@ public:
     sortPoints(inputs, left_out);
     makeTriangles();
     makeSphere();
-    for (Surface& surface : surfaces_) {
+    const std::vector<Indexed<double>> spacing = spacings();
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      Surface& surface = surfaces_[s];
       const Positions vertices = points(Eigen::all, surface.input_of_vertex);
       if (normals.cols() > 0)
         faceNormals(normals(Eigen::all, surface.input_of_vertex), vertices, surface);
-      judge(vertices, surface);
+      judge(vertices, spacing[s], surface);
+      addFilled(vertices, spacing[s], filled, surface);
     }
-    addFilled(points, filled);
     return std::move(surfaces_);
   }
 
@@ -221,12 +212,24 @@ private:
         surfaceAt(node).sphere.col(vertex_of_node_[node]) = directions.col(node);
   }
 
-  void judge(const Positions& points, Surface& surface) const {
+  /// At the vertices of each surface [unit of the input].
+  std::vector<Indexed<double>> spacings() const {
+    std::vector<Indexed<double>> all;
+    for (const Surface& surface : surfaces_)
+      all.emplace_back(surface.vertexCount());
+    for (const Index node : indicesOf(piece_of_))
+      if (piece_of_[node] >= 0)
+        all[static_cast<std::size_t>(piece_of_[node])][vertex_of_node_[node]] =
+            std::ldexp(spacing_[node], nodes_.exponent);
+    return all;
+  }
+
+  void judge(const Positions& points, const Indexed<double>& spacing, Surface& surface) const {
     surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options_.threads);
     if (!surface.topology.closed)
       surface.boundary = boundaryLoops(surface.triangles, surface.vertexCount());
     for (const std::vector<Index>& loop : surface.boundary)
-      surface.openings.push_back(openingOf(points, loop));
+      surface.openings.push_back(openingOf(points, spacing, loop));
     surface.diagnosis.kind =
         surface.boundary.empty() ? SurfaceKind::ClosedGenus0 : SurfaceKind::Open;
     if (options_.details)
@@ -234,21 +237,17 @@ private:
     surface.measures = measureMesh(points, surface.triangles, options_.threads);
   }
 
-  void addFilled(const Positions& points, const std::vector<Gap>& filled) {
+  void addFilled(const Positions& points, const Indexed<double>& spacing,
+                 const std::vector<Gap>& filled, Surface& surface) {
     for (const Gap& gap : filled) {
-      if (piece_of_[gap.loop.front()] < 0)
+      const Index node_of_gap = gap.loop.front();
+      if (piece_of_[node_of_gap] < 0 || &surfaceAt(node_of_gap) != &surface)
         continue;
-      Surface& surface = surfaceAt(gap.loop.front());
       std::vector<Index> loop;
       for (const Index node : gap.loop)
         loop.push_back(vertex_of_node_[node]);
       std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-      std::vector<Index> inputs;
-      inputs.reserve(loop.size());
-      for (const Index vertex : loop)
-        inputs.push_back(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
-      Opening opening = openingOf(points, std::move(inputs));
-      opening.loop = std::move(loop);
+      Opening opening = openingOf(points, spacing, std::move(loop));
       opening.is_filled = true;
       for (const Index t : gap.triangles) {
         opening.triangles.push_back(number_of_[t]);
@@ -262,6 +261,7 @@ private:
   }
 
   const OrderedPoints& nodes_;
+  const Indexed<double>& spacing_;
   const ViewMesh& view_;
   const OpenMesh& open_;
   const Options& options_;
@@ -318,7 +318,7 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
                          std::ldexp(options.fill_holes_area, -2 * nodes.exponent)};
   const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, open);
   clock.begin("quality");
-  std::vector<Surface> surfaces = SurfaceMaker(nodes, view->mesh, open, options)
+  std::vector<Surface> surfaces = SurfaceMaker(nodes, spacing, view->mesh, open, options)
                                       .run(points, info.normals, inputs, filled, left_out);
   std::size_t meshed = 0;
   for (const Surface& surface : surfaces)
