@@ -70,44 +70,13 @@ struct Opening {
   bool isCertain() const { return certainty >= 1.0 && !is_flat; }
 };
 
-/// A handle of the sampled surface: a loop along which it can be cut so that it stays in one piece.
-struct HandleLoop {
-  std::vector<Index> loop;                           ///< vertices around it, in order, each once
-  double length = 0.0;                               ///< of the loop [unit of the input]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
-  /// Certainty in [0, 1]: 1 if all cycles of the neighbour graph are handles; else by the product
-  /// of the steps of the loop and of the shortest walk that crosses it once, from 0 at 140 to 1 at
-  /// 800.
-  double certainty = 0.0;
-  /// The mesh has no handle there: it is cut along the loop, or there is none.
-  bool is_cut = false;
-};
-
-/// Kind of the sampled surface, judged by mesh and neighbour graph.
-enum class SurfaceKind {
-  ClosedGenus0,  ///< apparently a closed surface without handles, in one piece
-  Open,          ///< the surface has openings, which the mesh fills or leaves open
-  Handles,       ///< the surface has handles, which the mesh has or cuts
-  SeveralParts,  ///< several surfaces, which the mesh joins
-  Unclear,       ///< too many edges of the mesh are not in the graph: noise or a folded mesh
-};
-
 /// Bits of SurfaceDiagnosis::triangle_marks.
 namespace triangle_mark {
 inline constexpr std::uint8_t self_intersection = 1;  ///< intersects another triangle
 inline constexpr std::uint8_t filled_hole = 2;        ///< over a filled, certain opening
-inline constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
 inline constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
 inline constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
 }  // namespace triangle_mark
-
-/// Torn edges: neighbours along the surface that are far apart on the mesh.
-struct Handle {
-  std::size_t edges = 0;  ///< torn edges of the graph
-  double size = 0.0;      ///< diagonal of the box around them [unit of the input]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of their ends
-  std::vector<Index> vertices;                       ///< their ends, ascending
-};
 
 /// Two parts of the cloud with a gap between them.
 struct PartBridge {
@@ -121,8 +90,8 @@ struct PartBridge {
 
 /// Evidence against a closed genus-0 surface, and its place.
 struct SurfaceDiagnosis {
-  SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest finding
-  std::vector<Handle> handles;                   ///< in descending number of edges
+  /// Handles that the cloud certainly has and the mesh has not: it is cut there.
+  std::size_t cut_handles = 0;
   std::vector<PartBridge> bridges;               ///< in descending number of points
   std::size_t joined_parts = 0;                  ///< that the bridges join; they may form cycles
   bool is_one_sided = false;  ///< like a Moebius strip or a Klein bottle; the mesh is torn
@@ -130,14 +99,9 @@ struct SurfaceDiagnosis {
   bool fills_volume = false;  ///< the points fill a volume: there is no surface
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph; [0, 1].
   double edges_outside_graph = 0.0;
-  /// Number of handles by the cycles of the graph; unset if unknown, or if no torn neighbours call
-  /// for a count.
-  std::optional<int> genus;
   /// For each triangle, the bits of all findings; empty without Options::details.
   std::vector<std::uint8_t> triangle_marks;
 
-  /// Whether the surface looks closed and of genus 0. \return true if it does
-  bool looksClosedGenus0() const { return kind == SurfaceKind::ClosedGenus0; }
   /// Whether the mesh is folded: too many edges leave the graph.
   /// \return true if more than a tenth of its edges do
   bool isFolded() const;
@@ -245,8 +209,7 @@ enum class FacedBy {
 };
 
 /// A mesh through all points, its map to the sphere, and their quality. The mesh is a closed,
-/// oriented manifold with the handles that are listed and not cut, or such a mesh without the
-/// triangles over openings.
+/// oriented manifold, or such a mesh without the triangles over openings.
 struct Surface {
   /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 + 4g of a closed mesh
   /// of genus g.
@@ -257,8 +220,6 @@ struct Surface {
   std::vector<std::vector<Index>> boundary;
   /// Openings found in the surface, open or filled.
   std::vector<Opening> openings;
-  /// Handles found in the surface, those of the mesh first.
-  std::vector<HandleLoop> handles;
   /// 3 x v, unit vectors: the embedding of each vertex; empty if the mesh has handles, added
   /// vertices, or tubes so long that one sphere would squeeze them beyond the range of double.
   Positions sphere;
@@ -341,8 +302,7 @@ struct Surface {
   }
   /// Number of handles of the mesh. \return g
   std::size_t genus() const {
-    return static_cast<std::size_t>(std::count_if(
-        handles.begin(), handles.end(), [](const HandleLoop& handle) { return !handle.is_cut; }));
+    return static_cast<std::size_t>(std::max(0LL, topology.genus.value_or(0)));
   }
   /// Whether the mesh is closed. \return true if it has no boundary
   bool isClosed() const { return boundary.empty(); }

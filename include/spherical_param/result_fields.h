@@ -41,26 +41,22 @@ struct ResultField {
 };
 
 /// Names of an enumeration's values, in their order. \return them
-constexpr std::array<const char*, 5> namesOf(SurfaceKind) {
-  return {"closed_genus0", "open", "handles", "several_parts", "unclear"};
-}
-/// \copydoc namesOf(SurfaceKind)
 constexpr std::array<const char*, 4> namesOf(FacedBy) {
   return {"normals", "viewpoint", "up", "outward"};
 }
-/// \copydoc namesOf(SurfaceKind)
+/// \copydoc namesOf(FacedBy)
 constexpr std::array<const char*, 4> namesOf(ViewSource) {
   return {"given", "origin", "above", "rays"};
 }
-/// \copydoc namesOf(SurfaceKind)
+/// \copydoc namesOf(FacedBy)
 constexpr std::array<const char*, 5> namesOf(StopReason) {
   return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
 }
-/// \copydoc namesOf(SurfaceKind)
+/// \copydoc namesOf(FacedBy)
 constexpr std::array<const char*, 3> namesOf(EmbeddingBarrier) {
   return {"none", "coarse_levels", "everywhere"};
 }
-/// \copydoc namesOf(SurfaceKind)
+/// \copydoc namesOf(FacedBy)
 constexpr std::array<const char*, 5> namesOf(EmbeddingStep) {
   return {"start", "sweeps", "newton", "iteration", "end"};
 }
@@ -172,30 +168,6 @@ constexpr ResultField visitFields(const Opening*, const Visit& visit) {
 }
 
 template <typename Visit>
-constexpr ResultField visitFields(const HandleLoop*, const Visit& visit) {
-  visit({"is_cut", "the mesh has no handle there"}, &HandleLoop::is_cut);
-  visit({"certainty", "from 0 to 1, by the sizes of the handle in points"}, &HandleLoop::certainty);
-  visit({"center", "mean of the loop", 1}, &HandleLoop::center);
-  visit({"length", "of the loop", 1}, &HandleLoop::length);
-  visit({"loop", "vertices around it, in order", 0, FieldKind::Loops}, &HandleLoop::loop);
-  return {
-      "HandleLoop",
-      "A handle of the sampled surface: a loop along which it can be cut so that it stays in one "
-      "piece."};
-}
-
-template <typename Visit>
-constexpr ResultField visitFields(const Handle*, const Visit& visit) {
-  using Of = Handle;
-  visit({"edges", "torn edges of the neighbour graph"}, &Of::edges);
-  visit({"size", "diagonal of the box around them", 1}, &Of::size);
-  visit({"center", "mean of their ends", 1}, &Of::center);
-  visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
-  return {"Handle",
-          "Neighbours along the surface that are far apart on the mesh: probably a handle."};
-}
-
-template <typename Visit>
 constexpr ResultField visitFields(const PartBridge*, const Visit& visit) {
   using Of = PartBridge;
   visit({"points", "of the smaller part"}, &Of::points);
@@ -210,17 +182,13 @@ constexpr ResultField visitFields(const PartBridge*, const Visit& visit) {
 template <typename Visit>
 constexpr ResultField visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
-  visit({"kind", "the gravest finding"}, &Of::kind);
-  visit({"looks_closed_genus0", "nothing was found"}, &Of::looksClosedGenus0);
-  visit({"genus", "handles by the cycles of the graph; none if not counted or unknown"},
-        &Of::genus);
+  visit({"cut_handles", "that the cloud certainly has, and the mesh has not"}, &Of::cut_handles);
   visit({"is_one_sided", "like a Moebius strip or a Klein bottle"}, &Of::is_one_sided);
   visit({"is_on_lines", "the points lie along lines"}, &Of::is_on_lines);
   visit({"fills_volume", "the points fill a volume"}, &Of::fills_volume);
   visit({"edges_outside_graph",
          "fraction of edges between points more than two steps apart in the graph"},
         &Of::edges_outside_graph);
-  visit({"handles", "in descending number of edges"}, &Of::handles);
   visit({"bridges", "in descending number of points"}, &Of::bridges);
   visit({"joined_parts", "number of parts that the bridges join"}, &Of::joined_parts);
   visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
@@ -333,7 +301,6 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   visit({"outliers", "stray points that the mesh contains, ascending", 0, FieldKind::Inputs},
         &Of::outliers);
   visit({"openings", "of the surface, open or filled"}, &Of::openings);
-  visit({"handles", "of the surface, those of the mesh first"}, &Of::handles);
   visit({"boundary", "boundary loops, the surface on the left; empty for a closed mesh", 0,
          FieldKind::Loops},
         &Of::boundary);

@@ -34,12 +34,6 @@ std::string percent(double fraction) {
   return text.data();
 }
 
-/// Number of handles that the graph has and the mesh has not.
-std::size_t missingHandles(const Surface& result) {
-  const auto in_graph = static_cast<std::size_t>(result.diagnosis.genus.value_or(0));
-  return in_graph > result.genus() ? in_graph - result.genus() : 0;
-}
-
 /// Whether more triangles are left out than may intersect in a usable mesh.
 bool hasTangle(const Surface& result) {
   return 100 * result.left_out_triangles > static_cast<std::size_t>(result.triangles.cols());
@@ -49,7 +43,7 @@ bool hasTangle(const Surface& result) {
 bool isRough(const Surface& result) {
   return result.is_noisy && result.consolidated.cols() + result.smoothed.cols() == 0 &&
          result.outliers.empty() && result.diagnosis.bridges.empty() &&
-         missingHandles(result) == 0 && !result.diagnosis.is_on_lines &&
+         result.diagnosis.cut_handles == 0 && !result.diagnosis.is_on_lines &&
          !result.diagnosis.fills_volume;
 }
 
@@ -92,38 +86,16 @@ Finding partsOf(const SurfaceDiagnosis& diagnosis, const Options& given) {
   return shown(text, given, "parts", "each", true);
 }
 
-/// Handles that the mesh lacks, certain or possible.
+/// Handles that the mesh lacks.
 std::optional<Finding> handlesOf(const Surface& result, const Options& given) {
-  const bool may_have = withTopology(given).handles == HandleMode::None && !isRaw(given);
-  const auto finding = [&](const std::string& text) {
-    return may_have ? shown(text, given, "handles", "auto", true) : Finding{text, "", "", true};
-  };
-  const std::size_t missing = missingHandles(result);
-  if (missing > 0 && result.genus() == 0)
-    return finding(counted(missing, "handle") + ", cut: the mesh is a sphere");
-  if (missing > 0)
-    return finding(counted(missing, "more handle") + ", cut");
-  if (!result.diagnosis.handles.empty())
-    return finding("a possible handle (cut) or fold in " +
-                   counted(result.diagnosis.handles.size(), "place"));
-  return std::nullopt;
-}
-
-/// Handles that were found before the mesh, which then failed.
-std::optional<Finding> failedHandlesOf(const Surface& result) {
-  const auto first = std::find_if(result.handles.begin(), result.handles.end(),
-                                  [](const HandleLoop& handle) { return handle.is_cut; });
-  // A mesh without faults shows that there are none.
-  if (first == result.handles.end() || (result.intersecting_triangles == 0 && !result.isFolded() &&
-                                        result.diagnosis.handles.empty()))
+  const std::size_t missing = result.diagnosis.cut_handles;
+  if (missing == 0)
     return std::nullopt;
-  std::array<char, 128> center{};
-  std::snprintf(center.data(), center.size(), "(%.4g, %.4g, %.4g)", first->center[0],
-                first->center[1], first->center[2]);
-  const auto count = static_cast<std::size_t>(result.handles.end() - first);
-  return Finding{counted(count, "possible handle") +
-                     (count == 1 ? ", cut, around " : ", cut, one of them around ") + center.data(),
-                 "", "", false};
+  const std::string text = result.genus() == 0
+                               ? counted(missing, "handle") + ", cut: the mesh is a sphere"
+                               : counted(missing, "more handle") + ", cut";
+  const bool may_have = withTopology(given).handles == HandleMode::None && !isRaw(given);
+  return may_have ? shown(text, given, "handles", "auto", true) : Finding{text, "", "", true};
 }
 
 /// Certain openings that the mesh fills are a fault unless the options ask for it; without any,
@@ -196,8 +168,6 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
     findings.push_back({"the points lie along lines, and the surface between these is a guess"});
   if (const std::optional<Finding> handles = handlesOf(result, given))
     findings.push_back(*handles);
-  if (const std::optional<Finding> failed = failedHandlesOf(result))
-    findings.push_back(*failed);
   if (diagnosis.is_one_sided)
     findings.push_back(
         {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
@@ -255,10 +225,8 @@ std::string verdictOf(const Options& options, const Surface& result) {
     doubts.emplace_back("fills " + counted(result.filledOpenings(), "opening"));
   if (diagnosis.is_one_sided)
     doubts.emplace_back("tears a surface with one side");
-  else if (missingHandles(result) > 0)
-    doubts.emplace_back("cuts " + counted(missingHandles(result), "handle"));
-  else if (!diagnosis.handles.empty())
-    doubts.emplace_back("may cut a handle");
+  else if (diagnosis.cut_handles > 0)
+    doubts.emplace_back("cuts " + counted(diagnosis.cut_handles, "handle"));
   if (isFolded(options, result))
     doubts.emplace_back("is folded");
   if (result.has_certain_triangles_only)

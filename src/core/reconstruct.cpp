@@ -2,7 +2,7 @@
 
 #include "cloud_surfaces.h"
 #include "consolidation.h"
-#include "default_method.h"
+#include "attempts.h"
 #include "embedding_history.h"
 #include "exact_predicates.h"
 #include "findings.h"
@@ -19,7 +19,7 @@
 #include "smooth_fill.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
-#include "surface_topology.h"
+#include "surface_plan.h"
 #include "view_reconstruction.h"
 
 #include <algorithm>
@@ -38,11 +38,10 @@ namespace {
 /// divide it, and may take a handle.
 bool isAsPromised(const Surface& surface) {
   const MeshTopology& topology = surface.topology;
-  const auto genus = static_cast<long long>(surface.genus());
   return surface.isClosed()
-             ? topology.closed && topology.isSurface() && topology.genus == genus
+             ? topology.closed && topology.isSurface()
              : topology.manifold() && topology.oriented && topology.unused_vertices.empty() &&
-                   topology.boundary_loops == surface.boundary.size() && topology.genus <= genus;
+                   topology.boundary_loops == surface.boundary.size();
 }
 
 /// Whether the mesh may have openings.
@@ -77,69 +76,41 @@ NeighborGraph takeGraph(Neighborhoods& neighborhoods, const Options& options,
 }
 
 /// The published method: embed the graph by the iteration, and take the hull.
-MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const Options& options,
-                            StageClock& clock) {
+PartMesh meshAsPublished(const Positions& points, const Graph& graph, const Options& options,
+                         StageClock& clock) {
   constexpr double typical_tolerance = 1e-8;
-  MeshedCloud mesh;
-  mesh.graph = std::move(graph);
+  PartMesh mesh;
   clock.begin("embedding");
-  EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
-  mesh.embedding = paper::embed(mesh.graph.graph, points, options.paper,
+  EmbeddingRecorder recorder(graph.size(), options.embedding);
+  mesh.embedding = paper::embed(graph, points, options.paper,
                                 options.embedding.tolerance.value_or(typical_tolerance), recorder,
                                 clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
-  Triangles& triangles = mesh.optimization.triangles;
-  triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
+  Triangles triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
   clock.noteMesh();
   orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
-  mesh.optimization.intersecting =
+  mesh.intersecting =
       findPairsUpTo(mostOfUsable(columnCount(triangles)), points, triangles, clock.execution());
+  finishMesh(points, graph, std::move(triangles), options, clock, mesh);
   return mesh;
-}
-
-void smooth(const Positions& points, const OpenSurface& openings, const Options& options,
-            StageClock& clock, MeshedCloud& mesh) {
-  Execution execution = clock.execution();
-  execution.time_limit = clock.remaining();
-  clock.begin("smoothing");
-  mesh.smoothed =
-      smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph, openings.places(),
-                 SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
-                 options.method == Method::Default, options.seed, execution);
-  bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
-  is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
 }
 
 /// Meshes a graph of points, and judges the mesh.
 ///
 /// \param is_flat all points are in one plane.
-Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology topology,
+Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePlan plan,
                   bool is_flat, const CloudInfo& info, const Options& options, StageClock& clock) {
-  const OpenSurface& openings = topology.openings;
-  if (is_flat && !openings.isOpen())
+  if (is_flat && !plan.openings().isOpen())
     refuseFlat(options);
-  MeshedCloud mesh = options.method == Method::Paper
-                         ? meshAsPublished(points, std::move(graph), options, clock)
-                         : meshByDefault(points, std::move(graph), topology, options, clock);
-  if (options.smoothing > 0)
-    smooth(points, openings, options, clock, mesh);
+  PartMesh mesh = options.method == Method::Paper
+                      ? meshAsPublished(points, graph.graph, options, clock)
+                      : meshByAttempts(points, graph.graph, std::move(plan), options, clock);
   clock.begin("quality");
-  OpenMesh open;
-  if (openings.isOpen()) {
-    open = openMesh(points, mesh.triangles(), *openings.places());
-  } else {
-    open.triangles = std::move(mesh.triangles());
-    open.is_open.resize(columnCount(open.triangles), 0);
-  }
-  const std::optional<std::size_t> left_out =
-      cleanMesh(points, openings.isOpen(), options, clock.execution(), mesh, open);
-  const FacedBy faced_by = orient(points, info, open, mesh.embedding);
-  Surface surface = judge(points, std::move(mesh), surfaceOf(open), left_out.has_value(), openings,
-                          options, clock.execution());
+  const FacedBy faced_by = orient(points, info, mesh.mesh, mesh.embedding);
+  Surface surface = judge(points, graph, std::move(mesh), options, clock.execution());
   surface.faced_by = faced_by;
-  surface.left_out_triangles = left_out.value_or(0);
   return surface;
 }
 
@@ -157,20 +128,21 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
     neighborhoods.release();
     OrderedPoints& nodes = neighborhoods.nodes();
-    SurfaceTopology topology;
-    if (options.method == Method::Default)  // only the tangent Delaunay graph shows openings
-      topology = findTopology(nodes.points, graph.graph, is_flat, std::ldexp(1.0, nodes.exponent),
-                              options, clock);
+    // Only the tangent Delaunay graph shows openings.
+    SurfacePlan plan = options.method == Method::Default
+                           ? SurfacePlan(nodes.points, graph.graph, is_flat,
+                                         std::ldexp(1.0, nodes.exponent), options, clock)
+                           : SurfacePlan();
     if (round < max_rounds &&
-        selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
+        selection.complete(part, nodes, plan.openings().embeddedOpenings().openings))
       continue;
     CloudInfo info = selection.infoOf(part);
     if (info.normals.cols() > 0)
       info.normals = Positions(info.normals(Eigen::all, nodes.input_of_node));
     if (info.viewpoint)
       info.viewpoint = timesPowerOfTwo(*info.viewpoint, -nodes.exponent);
-    Surface surface = meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat, info,
-                                options, clock);
+    Surface surface =
+        meshGraph(nodes.points, graph, std::move(plan), is_flat, info, options, clock);
     if (is_flat && surface.isClosed())
       refuseFlat(options);
     toInput(nodes, surface);

@@ -23,10 +23,6 @@
 namespace spherical_param::internal {
 namespace {
 
-bool isGiven(const Options& options) {
-  return options.view == ViewMode::Up || options.view == ViewMode::Place;
-}
-
 /// The option that keeps a view from being meshed; none if there is none.
 const char* obstacleOf(const Options& options) {
   return options.consolidation != ConsolidationMode::None  ? "consolidation"
@@ -34,12 +30,6 @@ const char* obstacleOf(const Options& options) {
          : options.outliers == OutlierMode::Deviation      ? "outliers"
          : options.intersections == IntersectionMode::Keep ? "intersections"
                                                            : nullptr;
-}
-
-/// The place that the caller gave, in the unit of nodes.
-Eigen::Vector3d givenPlace(const Positions& nodes, double unit, const Options& options) {
-  return options.view == ViewMode::Up ? farAbove(nodes, Eigen::Vector3d::UnitZ())
-                                      : Eigen::Vector3d(options.viewpoint / unit);
 }
 
 /// The mesh from the place that the caller gave, or from one that is found.
@@ -230,8 +220,6 @@ private:
       surface.boundary = boundaryLoops(surface.triangles, surface.vertexCount());
     for (const std::vector<Index>& loop : surface.boundary)
       surface.openings.push_back(openingOf(points, spacing, loop));
-    surface.diagnosis.kind =
-        surface.boundary.empty() ? SurfaceKind::ClosedGenus0 : SurfaceKind::Open;
     if (options_.details)
       surface.diagnosis.triangle_marks.resize(columnCount(surface.triangles), 0);
     surface.measures = measureMesh(points, surface.triangles, options_.threads);
@@ -337,12 +325,6 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   result.left_out = std::move(left_out);
   result.view = View{timesPowerOfTwo(view->mesh.place, nodes.exponent), view->source};
   return true;
-}
-
-std::optional<Positions> givenDirections(const Positions& nodes, double unit,
-                                         const Options& options) {
-  return isGiven(options) ? std::optional(directionsFrom(givenPlace(nodes, unit, options), nodes))
-                          : std::nullopt;
 }
 
 }  // namespace spherical_param::internal

@@ -6,8 +6,6 @@
 #include "spherical_param/types.h"
 #include "stage_clock.h"
 
-#include <optional>
-
 namespace spherical_param::internal {
 
 /// Meshes a cloud that a place sees as one layer, by the directions from there: Result::view, the
@@ -20,11 +18,5 @@ namespace spherical_param::internal {
 /// \throw InvalidInput if the caller gave a place from which there is no mesh, or such options.
 bool reconstructView(const Positions& points, const Options& given, const CloudInfo& info,
                      StageClock& clock, Result& result);
-
-/// The directions of nodes from the place that the caller gave; none if there is none.
-///
-/// \param unit of the nodes' coordinates, a power of two [unit of the input].
-std::optional<Positions> givenDirections(const Positions& nodes, double unit,
-                                         const Options& options);
 
 }  // namespace spherical_param::internal

@@ -174,27 +174,6 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   }
 }
 
-/// Adds the loops of the handles, one after the other, and returns what each of them is.
-Json addHandles(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
-                const ReportMesh& mesh, Arrays& arrays) {
-  Json handles = Json::array();
-  std::vector<double> loops;
-  for (const Surface* surface : surfaces) {
-    const Positions positions = vertexPositions(cloud, *surface);
-    for (const HandleLoop& handle : surface->handles) {
-      const Positions loop = positions(Eigen::all, handle.loop);
-      loops.insert(loops.end(), loop.data(), loop.data() + loop.size());
-      handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
-    }
-  }
-  if (!loops.empty()) {
-    const auto count = static_cast<Eigen::Index>(loops.size() / 3);
-    arrays.addPoints("handles", Eigen::Map<const Positions>(loops.data(), 3, count),
-                     boxOf(mesh.positions));
-  }
-  return handles;
-}
-
 /// The rigid motion that brings the points of the sphere about to where those of the object are, by
 /// rows; null without a sphere.
 Json sphereTurn(const ReportMesh& mesh) {
@@ -370,7 +349,6 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   }
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = sphereTurn(mesh);
-  json["handles"] = addHandles(cloud, surfaces, mesh, arrays);
   json["frames"] =
       surfaces.size() == 1 ? addHistory(cloud, *surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();

@@ -364,37 +364,49 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
   return nearest >= 0;
 }
 
+/// Closes a mesh of faces.
+///
+/// \param faces certain triangles; others fill.
+std::optional<FaceMesh> meshOf(const Positions& points, const Graph& graph, const Triangles& open,
+                               TriangleList& faces) {
+  FaceMesh mesh;
+  mesh.triangles = joined(points, graph, closed(points, withoutPinches(open, graph.size())));
+  // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
+  if (mesh.triangles.cols() < 4)
+    return std::nullopt;
+  mesh.genus = static_cast<std::size_t>(*checkTopology(mesh.triangles, graph.size()).genus);
+  std::sort(faces.begin(), faces.end());
+  for (const auto& t : mesh.triangles.colwise())
+    mesh.is_filling.push_back(
+        std::binary_search(faces.begin(), faces.end(), std::array<Index, 3>{t[0], t[1], t[2]}) ? 0
+                                                                                               : 1);
+  return mesh;
+}
+
 }  // namespace
 
-std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
-                                  const Execution& execution) {
-  RotationSystem rotation(points, graph, nodeSpacings(graph, execution.threads), execution.threads);
-  if (rotation.hasOpposite(graph))
-    rotation.separateOpposite();
-  reportFraction(reportOf(execution, "openings"), 0.5);
+std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph,
+                                  const RotationSystem& rotation) {
   TriangleList found = trianglesOf(points, rotation);
-  Triangles faces = matrixOf(found);
-  FaceMesh mesh;
-  for (long long last = std::numeric_limits<long long>::max();;) {
-    mesh.triangles = joined(points, graph, closed(points, withoutPinches(faces, graph.size())));
-    // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
-    if (mesh.triangles.cols() < 4)
-      return std::nullopt;
-    const long long found_genus = *checkTopology(mesh.triangles, graph.size()).genus;
-    if (found_genus == static_cast<long long>(genus) || found_genus == 0)
-      break;
-    if (found_genus >= last)
-      return std::nullopt;
-    last = found_genus;
+  return meshOf(points, graph, matrixOf(found), found);
+}
+
+std::optional<FaceMesh> withoutHandles(const Positions& points, const Graph& graph,
+                                       FaceMesh mesh) {
+  while (mesh.genus > 0) {
     const SphereMesh whole(mesh.triangles, graph.size());
     PlanarRegion region(points, whole);
     region.grow(0);
-    faces = filtered(mesh.triangles, [&](Eigen::Index t) { return region.contains(t); });
-  }
-  std::sort(found.begin(), found.end());
-  for (const auto& t : mesh.triangles.colwise()) {
-    const std::array<Index, 3> corners{t[0], t[1], t[2]};
-    mesh.is_filling.push_back(std::binary_search(found.begin(), found.end(), corners) ? 0 : 1);
+    TriangleList faces;
+    for (Index t = 0; t < whole.size(); ++t)
+      if (mesh.is_filling[t] == 0)
+        faces.push_back(whole.vertices(t));
+    const auto stays = [&](Eigen::Index t) { return region.contains(t); };
+    std::optional<FaceMesh> rest =
+        meshOf(points, graph, filtered(mesh.triangles, stays), faces);
+    if (!rest || rest->genus >= mesh.genus)
+      return std::nullopt;
+    mesh = std::move(*rest);
   }
   return mesh;
 }

@@ -1,8 +1,6 @@
 #include "openings.h"
 
-#include "cycle_labels.h"
 #include "exact_predicates.h"
-#include "filled_graph.h"
 #include "pi.h"
 #include "rows.h"
 
@@ -196,9 +194,6 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Indexed
                       RotationSystem& rotation) {
   Openings found = openingsOf(points, graph, spacing, rotation);
   if (found.openings.empty() || !rotation.hasOpposite(graph))
-    return found;
-  // The graph has no cycles when all openings are filled, but for those of up to six points.
-  if (found.is_one_sided && countCycles(fillOpenings(points, graph, found).graph, 2) == 0)
     return found;
   rotation.separateOpposite();
   return openingsOf(points, graph, spacing, rotation);

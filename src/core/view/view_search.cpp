@@ -267,4 +267,19 @@ std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d
   return points.cols() < min_points ? std::nullopt : Searcher(points, execution).run(viewpoint);
 }
 
+bool isGiven(const Options& options) {
+  return options.view == ViewMode::Up || options.view == ViewMode::Place;
+}
+
+Eigen::Vector3d givenPlace(const Positions& nodes, double unit, const Options& options) {
+  return options.view == ViewMode::Up ? farAbove(nodes, Eigen::Vector3d::UnitZ())
+                                      : Eigen::Vector3d(options.viewpoint / unit);
+}
+
+std::optional<Positions> givenDirections(const Positions& nodes, double unit,
+                                         const Options& options) {
+  return isGiven(options) ? std::optional(directionsFrom(givenPlace(nodes, unit, options), nodes))
+                          : std::nullopt;
+}
+
 }  // namespace spherical_param::internal

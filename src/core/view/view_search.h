@@ -1,6 +1,7 @@
 #pragma once
 
 #include "indexed.h"
+#include "spherical_param/options.h"
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
 #include "view_mesh.h"
@@ -59,5 +60,17 @@ bool isElevationGrid(const Positions& points);
 
 /// A place far above points, along an axis.
 Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis);
+
+/// Whether the caller gave a place.
+bool isGiven(const Options& options);
+
+/// The place that the caller gave, in the unit of nodes.
+///
+/// \param unit a power of two [unit of the input].
+Eigen::Vector3d givenPlace(const Positions& nodes, double unit, const Options& options);
+
+/// The directions of nodes from the place that the caller gave; none if there is none.
+std::optional<Positions> givenDirections(const Positions& nodes, double unit,
+                                         const Options& options);
 
 }  // namespace spherical_param::internal

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "embedding.h"
 #include "open_places.h"
 #include "spherical_param/options.h"
 #include "spherical_param/result.h"
@@ -38,10 +37,6 @@ public:
   /// \param triangles of the mesh.
   std::vector<Opening> found(const Positions& points, const Graph& graph,
                              const Triangles& triangles) const;
-
-  /// embed() of a graph of the nodes, with virtual nodes in the openings.
-  Embedding embedded(const Positions& points, const Graph& graph, const Options& options,
-                     const Execution& execution) const;
 
 private:
   Openings embedded_;  ///< filled by virtual nodes

@@ -1,8 +1,5 @@
 #include "open_surface.h"
 
-#include "embedding_history.h"
-#include "filled_graph.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -60,18 +57,6 @@ std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& gr
     if (const auto over = places.openingOver(triangles(0, t), triangles(1, t), triangles(2, t)))
       all[number[*over]].triangles.push_back(static_cast<Index>(t));
   return all;
-}
-
-Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, const Options& options,
-                                const Execution& execution) const {
-  if (embedded_.openings.empty())
-    return embed(graph, points, options.embedding, options.seed, execution);
-  const FilledGraph filled = fillOpenings(points, graph, embedded_);
-  Embedding embedding =
-      embed(filled.graph, filled.points, options.embedding, options.seed, execution);
-  embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
-  keepVertices([&](Index node) { return node < points.cols(); }, embedding.history);
-  return embedding;
 }
 
 }  // namespace spherical_param::internal

@@ -1,0 +1,89 @@
+#include "mesh_cleaning.h"
+
+#include "face_mesh.h"
+#include "indexed.h"
+#include "intersection_removal.h"
+
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
+IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const OpenMesh& open,
+                            const Execution& execution) {
+  const std::vector<Index> triangles = trianglesOfSurface(open);
+  IntersectingPairs found =
+      findPairsUpTo(most, positions, open.triangles(Eigen::all, triangles), execution);
+  for (auto& pair : found.pairs)
+    for (Index& t : pair)
+      t = triangles[static_cast<std::size_t>(t)];
+  return found;
+}
+
+/// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
+/// them. Returns how many intersect.
+std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
+                                        const IntersectingTriangles& pairs, OpenMesh& open) {
+  OpenMesh rest = open;
+  const std::size_t left_out = leaveOutTangles(vertices, pairs, rest);
+  if (surfaceCount(rest) + most < surfaceCount(open))
+    return std::nullopt;
+  open = std::move(rest);
+  return left_out;
+}
+
+}  // namespace
+
+bool removesIntersections(const Options& options) {
+  return options.intersections == IntersectionMode::Remove && options.method == Method::Default;
+}
+
+void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
+               PartMesh& mesh) {
+  // More of a surface is no spot, but a tangle.
+  constexpr std::size_t vertices_of = 500;
+  constexpr std::size_t triangles_of = 100;
+  constexpr std::size_t tangle_of = 10;
+  const bool removes = removesIntersections(options) && !mesh.optimization.is_out_of_time;
+  const bool may_open = options.surface != SurfaceMode::Closed;
+  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  const std::size_t triangles = surfaceCount(mesh.mesh);
+  // The optimisation has left those of a closed mesh on its points. One of two may stay.
+  IntersectingPairs& found = mesh.intersecting;
+  if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
+    found = pairsUpTo(removes ? 2 * triangles / tangle_of : 1, positions, mesh.mesh, execution);
+  if (!found.pairs.empty() && !found.is_sample && removes) {
+    const Removal most{columnCount(points) / vertices_of, may_open ? triangles / triangles_of : 0};
+    std::optional<std::size_t> left_out;
+    if (const auto removal = clearIntersections(positions, found.pairs, most, mesh.mesh))
+      left_out = removal->triangles;
+    else if (may_open)
+      left_out = leaveOutUpTo(triangles / tangle_of, columnCount(points), found.pairs, mesh.mesh);
+    if (left_out) {
+      mesh.left_out_triangles = *left_out;
+      found = {};
+    }
+  }
+  if (!found.pairs.empty())
+    found = findPairsUpTo(mostOfUsable(triangles), positions, surfaceOf(mesh.mesh), execution);
+}
+
+bool takeCertainFaces(const Positions& points, const FaceMesh& faces, const Execution& execution,
+                      PartMesh& mesh) {
+  constexpr std::size_t vertices_of = 3;
+  mesh.mesh = {faces.triangles, faces.is_filling};
+  const IntersectingPairs found =
+      pairsUpTo(surfaceCount(mesh.mesh), points, mesh.mesh, execution);
+  if (found.is_sample)
+    return false;
+  mesh.left_out_triangles = leaveOutTangles(columnCount(points), found.pairs, mesh.mesh);
+  mesh.has_certain_triangles_only = true;
+  const Triangles surface = surfaceOf(mesh.mesh);
+  std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
+  sortUnique(vertices);
+  return vertices_of * vertices.size() >= columnCount(points);
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "face_mesh.h"
+#include "part_mesh.h"
+#include "spherical_param/execution.h"
+#include "spherical_param/options.h"
+#include "spherical_param/types.h"
+
+namespace spherical_param::internal {
+
+/// Whether triangles that intersect are taken apart.
+bool removesIntersections(const Options& options);
+
+/// Removes the intersections of a mesh for good, if the options say so and time is left. The first
+/// of these that leaves none:
+///
+/// 1. clearIntersections(), of at most 0.2 % of the points and 1 % of the triangles;
+/// 2. leaveOutTangles(), of at most a tenth of the triangles.
+///
+/// A closed surface (SurfaceMode::Closed) loses no triangles.
+///
+/// \param points nodes.
+/// \param mesh   optimised and opened; its mesh is unchanged if triangles still intersect.
+void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
+               PartMesh& mesh);
+
+/// Makes the faces of a graph the mesh, without those that intersect, if a third of the points is
+/// in it. Returns whether it is.
+bool takeCertainFaces(const Positions& points, const FaceMesh& faces, const Execution& execution,
+                      PartMesh& mesh);
+
+}  // namespace spherical_param::internal

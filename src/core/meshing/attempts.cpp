@@ -1,0 +1,302 @@
+#include "attempts.h"
+
+#include "embedding_history.h"
+#include "energy_mesh.h"
+#include "exact_predicates.h"
+#include "face_mesh.h"
+#include "filled_graph.h"
+#include "mesh_cleaning.h"
+#include "orientation.h"
+#include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
+#include "view_search.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Handles are certain if the mesh without them has so many times the energy after flips; others
+/// must save this fraction of it after the optimisation.
+constexpr double kSureGain = 1.8;
+constexpr double kMinGain = 0.05;
+
+/// The genus of a closed mesh in one piece over all vertices.
+std::size_t genusOf(const Triangles& closed, std::size_t vertices) {
+  return (columnCount(closed) + 4 - 2 * vertices) / 4;
+}
+
+/// A finished mesh and what it costs.
+struct Outcome {
+  PartMesh part;
+  std::size_t genus = 0;
+  std::size_t left_out = 0;  ///< points and triangles
+  double energy = 0.0;
+
+  std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
+};
+
+bool isBetter(const Outcome& mesh, const Outcome& than) {
+  if (mesh.intersecting() != than.intersecting())
+    return mesh.intersecting() < than.intersecting();
+  if (mesh.genus > than.genus)
+    return mesh.energy < (1.0 - kMinGain) * than.energy;
+  if (mesh.genus < than.genus)
+    return !isBetter(than, mesh);
+  return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
+}
+
+/// The ways to mesh a part: the rows of a table, in the order in which they are tried.
+class Attempts {
+public:
+  Attempts(const Positions& points, const Graph& graph, SurfacePlan& plan, const Options& options,
+           StageClock& clock)
+      : points_(points), graph_(graph), plan_(plan), options_(options), clock_(clock) {}
+
+  Outcome run() {
+    struct Row {
+      bool (Attempts::*is_due)();
+      std::optional<Outcome> (Attempts::*mesh)();
+    };
+    static constexpr Row rows[] = {
+        {&Attempts::areFacesSure, &Attempts::meshFaces},
+        {&Attempts::mayBeSphere, &Attempts::meshSphere},
+        {&Attempts::areFacesLeft, &Attempts::meshFaces},
+        {&Attempts::mayOpenAll, &Attempts::meshWithAllOpen},
+        {&Attempts::mayLeaveOut, &Attempts::meshCertainFaces},
+    };
+    for (const Row& row : rows) {
+      if (best_ && (isAccepted() || !clock_.hasTimeAgain()))
+        break;
+      if (!(this->*row.is_due)())
+        continue;
+      std::optional<Outcome> next = (this->*row.mesh)();
+      if (next && (!best_ || isBetter(*next, *best_)))
+        best_ = std::move(next);
+    }
+    best_->part.graph_genus = std::max(best_->genus, has_sure_handles_ ? facesGenus() : 0);
+    return std::move(*best_);
+  }
+
+private:
+  bool mayHaveHandles() const {
+    return options_.handles == HandleMode::Auto && !plan_.openings().isOneSided();
+  }
+  std::size_t facesGenus() { return plan_.faces() != nullptr ? plan_.faces()->genus : 0; }
+
+  /// No triangles intersect, nothing is left out, and the graph shows no more handles.
+  bool isAccepted() {
+    return best_->part.intersecting.pairs.empty() && best_->left_out == 0 &&
+           (!mayHaveHandles() || best_->genus == facesGenus());
+  }
+
+  // --- 1. The faces of the graph
+
+  bool areFacesSure() {
+    if (!removesIntersections(options_) && !mayHaveHandles())
+      return false;
+    if (plan_.faces() == nullptr || plan_.openings().isOneSided())
+      return false;
+    // Larger faces are filled by ears, which may be folded.
+    constexpr std::size_t max_filling = 1000;
+    const FaceMesh& faces = *plan_.faces();
+    const auto filling = static_cast<std::size_t>(
+        std::count(faces.is_filling.begin(), faces.is_filling.end(), std::uint8_t{1}));
+    if (faces.genus == 0)
+      return max_filling * filling <= faces.is_filling.size();
+    return hasSureHandles() && mayHaveHandles();
+  }
+
+  /// Whether the sphere has far more energy than the faces, even after flips.
+  bool hasSureHandles() {
+    if (!has_sure_handles_)
+      has_sure_handles_ = facesGenus() > 0 && flippedEnergy(sphere()) >
+                                                  kSureGain * flippedEnergy(facesWithAllNodes());
+    return *has_sure_handles_;
+  }
+
+  Triangles facesWithAllNodes() { return withAllNodes(points_, graph_, plan_.faces()->triangles); }
+
+  std::optional<Outcome> meshFaces() {
+    are_faces_tried_ = true;
+    std::optional<FaceMesh> faces = *plan_.faces();
+    if (faces->genus > 0 && !mayHaveHandles())
+      faces = withoutHandles(points_, graph_, std::move(*faces));
+    if (!faces)
+      return std::nullopt;
+    clock_.noteMesh();
+    return finished(withAllNodes(points_, graph_, faces->triangles), {});
+  }
+
+  bool areFacesLeft() {
+    return !are_faces_tried_ && (removesIntersections(options_) || mayHaveHandles()) &&
+           plan_.faces() != nullptr;
+  }
+
+  // --- 2. The sphere
+
+  bool mayBeSphere() { return !best_ || !mayHaveHandles() || !has_sure_handles_.value_or(false); }
+
+  const Triangles& sphere() {
+    if (!sphere_) {
+      embedding_ = embeddingOf();
+      clock_.begin("triangulation");
+      sphere_ = triangulateSphere(embedding_.directions, clock_.execution());
+      orientOutward(points_, *sphere_, embedding_);
+      clock_.noteMesh();
+    }
+    return *sphere_;
+  }
+
+  /// With virtual nodes in the openings.
+  Embedding embeddingOf() {
+    clock_.begin("embedding");
+    Embedding embedding;
+    const Openings& openings = plan_.openings().embeddedOpenings();
+    const auto embed_graph = [&](const Graph& graph, const Positions& points) {
+      return embed(graph, points, options_.embedding, options_.seed, clock_.execution());
+    };
+    if (auto directions = givenDirections(points_, plan_.openings().unit(), options_)) {
+      embedding.directions = std::move(*directions);
+    } else if (openings.openings.empty()) {
+      embedding = embed_graph(graph_, points_);
+    } else {
+      const FilledGraph filled = fillOpenings(points_, graph_, openings);
+      embedding = embed_graph(filled.graph, filled.points);
+      embedding.directions = Positions(embedding.directions.leftCols(points_.cols()));
+      keepVertices([&](Index node) { return node < points_.cols(); }, embedding.history);
+    }
+    return embedding;
+  }
+
+  std::optional<Outcome> meshSphere() {
+    const Triangles& triangles = sphere();
+    return finished(triangles, embedding_);
+  }
+
+  // --- 3. All openings open
+
+  bool mayOpenAll() {
+    // If so many triangles intersect, it is the embedding that is wrong.
+    return removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
+           plan_.openings().fillsPossible();
+  }
+
+  std::optional<Outcome> meshWithAllOpen() {
+    Options options = options_;
+    options.surface = SurfaceMode::Open;
+    SurfacePlan plan(points_, graph_, false, plan_.openings().unit(), options, clock_);
+    return Attempts(points_, graph_, plan, options, clock_).run();
+  }
+
+  // --- 4. Certain faces
+
+  bool mayLeaveOut() {
+    return removesIntersections(options_) && options_.surface != SurfaceMode::Closed &&
+           options_.smoothing == 0 && !best_->part.intersecting.pairs.empty();
+  }
+
+  std::optional<Outcome> meshCertainFaces() {
+    if (plan_.faces() == nullptr)
+      return std::nullopt;
+    Outcome outcome;
+    outcome.part.openings = plan_.openings();
+    outcome.part.optimization = best_->part.optimization;
+    if (!takeCertainFaces(points_, *plan_.faces(), clock_.execution(), outcome.part))
+      return std::nullopt;
+    outcome.genus = plan_.faces()->genus;
+    return outcome;
+  }
+
+  // --- What all of them need
+
+  double flippedEnergy(const Triangles& triangles) {
+    Execution execution = clock_.execution();
+    execution.time_limit = clock_.remaining();
+    clock_.begin("optimization");
+    return energyOf(flipMesh(points_, triangles, graph_,
+                             {plan_.openings().places(), false, options_.seed}, execution));
+  }
+
+  double energyOf(const Triangles& triangles) const {
+    return EnergyMesh(points_, triangles, graph_, 1, plan_.openings().places()).energy();
+  }
+
+  /// Optimises, smooths, opens and cleans a mesh.
+  Outcome finished(Triangles triangles, Embedding embedding) {
+    Outcome outcome;
+    outcome.genus = genusOf(triangles, graph_.size());
+    outcome.part.openings = plan_.openings();
+    outcome.part.embedding = std::move(embedding);
+    finishMesh(points_, graph_, std::move(triangles), options_, clock_, outcome.part);
+    const Triangles surface = surfaceOf(outcome.part.mesh);
+    std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
+    sortUnique(vertices);
+    outcome.left_out = graph_.size() - vertices.size() + outcome.part.left_out_triangles;
+    outcome.energy = energyOf(outcome.part.mesh.triangles);
+    return outcome;
+  }
+
+  const Positions& points_;
+  const Graph& graph_;
+  SurfacePlan& plan_;
+  const Options& options_;
+  StageClock& clock_;
+  std::optional<Outcome> best_;
+  bool are_faces_tried_ = false;
+  std::optional<bool> has_sure_handles_;
+  std::optional<Triangles> sphere_;
+  Embedding embedding_;
+};
+
+}  // namespace
+
+void finishMesh(const Positions& points, const Graph& graph, Triangles triangles,
+                const Options& options, StageClock& clock, PartMesh& mesh) {
+  const OpenPlaces* const places = mesh.openings.places();
+  if (options.method == Method::Default) {
+    Execution execution = clock.execution();
+    execution.time_limit = clock.remaining();
+    // The other half is for the smoothed points, which get an optimisation of their own.
+    const bool is_smoothed = options.smoothing > 0;
+    if (is_smoothed && execution.time_limit)
+      *execution.time_limit /= 2.0;
+    clock.begin("optimization");
+    MeshOptimization optimized =
+        optimizeMesh(points, triangles, graph,
+                     OptimizationOptions{places, !is_smoothed, options.seed, clock.share()},
+                     execution);
+    triangles = std::move(optimized.triangles);
+    mesh.intersecting = std::move(optimized.intersecting);
+    mesh.optimization = optimized.report;
+  }
+  if (options.smoothing > 0) {
+    Execution execution = clock.execution();
+    execution.time_limit = clock.remaining();
+    clock.begin("smoothing");
+    mesh.smoothed = smoothMesh(points, triangles, graph, places,
+                               SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
+                               options.method == Method::Default, options.seed, execution);
+    triangles = mesh.smoothed.triangles;
+    mesh.optimization.is_out_of_time |= mesh.smoothed.is_out_of_time;
+  }
+  clock.begin("quality");
+  if (places != nullptr) {
+    mesh.mesh = openMesh(points, triangles, *places);
+  } else {
+    mesh.mesh.triangles = std::move(triangles);
+    mesh.mesh.is_open.assign(columnCount(mesh.mesh.triangles), 0);
+  }
+  cleanMesh(points, options, clock.execution(), mesh);
+}
+
+PartMesh meshByAttempts(const Positions& points, const Graph& graph, SurfacePlan plan,
+                        const Options& options, StageClock& clock) {
+  return Attempts(points, graph, plan, options, clock).run().part;
+}
+
+}  // namespace spherical_param::internal

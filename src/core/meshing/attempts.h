@@ -1,0 +1,25 @@
+#pragma once
+
+#include "graph.h"
+#include "part_mesh.h"
+#include "spherical_param/options.h"
+#include "stage_clock.h"
+#include "surface_plan.h"
+
+namespace spherical_param::internal {
+
+/// Optimises a closed mesh, smooths it if that is wanted, and opens and cleans it.
+///
+/// \param triangles closed.
+/// \param mesh      with openings and embedding; receives the rest.
+void finishMesh(const Positions& points, const Graph& graph, Triangles triangles,
+                const Options& options, StageClock& clock, PartMesh& mesh);
+
+/// Meshes a graph by Method::Default: tries one way after the other, the cheap ones first, until a
+/// mesh is accepted, or else takes the best one.
+///
+/// \param points nodes; \param graph of them.
+PartMesh meshByAttempts(const Positions& points, const Graph& graph, SurfacePlan plan,
+                        const Options& options, StageClock& clock);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "face_mesh.h"
+#include "graph.h"
+#include "open_surface.h"
+#include "rotation_system.h"
+#include "spherical_param/options.h"
+#include "stage_clock.h"
+
+#include <optional>
+
+namespace spherical_param::internal {
+
+/// What is known of a surface before it is meshed: its openings, and the faces of its graph.
+class SurfacePlan {
+public:
+  /// A closed surface: that of a graph which shows no openings.
+  SurfacePlan() = default;
+  /// \param points  nodes, must outlive this, as the graph.
+  /// \param is_flat all points are in one plane: openings cannot be filled.
+  /// \param unit    of the nodes' coordinates [unit of the input].
+  SurfacePlan(const Positions& points, const Graph& graph, bool is_flat, double unit,
+              const Options& options, StageClock& clock);
+
+  const OpenSurface& openings() const { return openings_; }
+  /// The closed mesh of the faces of the graph; nullptr if there is none.
+  const FaceMesh* faces();
+
+private:
+  const Positions* points_ = nullptr;
+  const Graph* graph_ = nullptr;
+  OpenSurface openings_;
+  std::optional<RotationSystem> rotation_;
+  bool has_faces_ = false;
+  std::optional<FaceMesh> faces_;
+};
+
+}  // namespace spherical_param::internal
