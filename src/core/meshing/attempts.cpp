@@ -65,12 +65,13 @@ public:
     static constexpr Row rows[] = {
         {&Attempts::areFacesSure, &Attempts::meshFaces},
         {&Attempts::mayBeSphere, &Attempts::meshSphere},
-        {&Attempts::areFacesLeft, &Attempts::meshFaces},
+        {&Attempts::mayFacesHelp, &Attempts::meshFaces},
+        {&Attempts::areHandlesDoubtful, &Attempts::meshFacesWithoutHandles},
         {&Attempts::mayOpenAll, &Attempts::meshWithAllOpen},
         {&Attempts::mayLeaveOut, &Attempts::meshCertainFaces},
     };
     for (const Row& row : rows) {
-      if (best_ && (isAccepted() || !clock_.hasTimeAgain()))
+      if (best_ && !clock_.hasTimeAgain())
         break;
       if (!(this->*row.is_due)())
         continue;
@@ -78,7 +79,9 @@ public:
       if (next && (!best_ || isBetter(*next, *best_)))
         best_ = std::move(next);
     }
-    best_->part.graph_genus = std::max(best_->genus, has_sure_handles_ ? facesGenus() : 0);
+    best_->part.graph_genus = best_->genus;
+    if (options_.handles == HandleMode::None && hasSureHandles())
+      best_->part.graph_genus = facesGenus();
     return std::move(*best_);
   }
 
@@ -88,58 +91,75 @@ private:
   }
   std::size_t facesGenus() { return plan_.faces() != nullptr ? plan_.faces()->genus : 0; }
 
-  /// No triangles intersect, nothing is left out, and the graph shows no more handles.
-  bool isAccepted() {
-    return best_->part.intersecting.pairs.empty() && best_->left_out == 0 &&
-           (!mayHaveHandles() || best_->genus == facesGenus());
+  /// Whether no triangles intersect, and nothing is left out.
+  bool isSound() const {
+    return best_ && best_->part.intersecting.pairs.empty() && best_->left_out == 0;
   }
 
   // --- 1. The faces of the graph
 
-  bool areFacesSure() {
-    if (!removesIntersections(options_) && !mayHaveHandles())
-      return false;
-    if (plan_.faces() == nullptr || plan_.openings().isOneSided())
-      return false;
-    // Larger faces are filled by ears, which may be folded.
-    constexpr std::size_t max_filling = 1000;
-    const FaceMesh& faces = *plan_.faces();
-    const auto filling = static_cast<std::size_t>(
-        std::count(faces.is_filling.begin(), faces.is_filling.end(), std::uint8_t{1}));
-    if (faces.genus == 0)
-      return max_filling * filling <= faces.is_filling.size();
-    return hasSureHandles() && mayHaveHandles();
+  bool mayUseFaces() {
+    return (removesIntersections(options_) || mayHaveHandles()) && plan_.faces() != nullptr;
   }
 
-  /// Whether the sphere has far more energy than the faces, even after flips.
+  /// Whether faces beyond those of the graph are at most a fraction.
+  bool isFilledUpTo(double fraction) {
+    const auto& is_filling = plan_.faces()->is_filling;
+    const auto filling = std::count(is_filling.begin(), is_filling.end(), std::uint8_t{1});
+    return static_cast<double>(filling) <= fraction * static_cast<double>(is_filling.size());
+  }
+
+  /// Whether the faces close up with hardly a defect.
+  bool areFacesSure() {
+    constexpr double max_filling = 0.001;
+    if (!mayUseFaces() || plan_.openings().isOneSided())
+      return false;
+    return facesGenus() == 0 ? isFilledUpTo(max_filling) : mayHaveHandles() && hasSureHandles();
+  }
+
+  /// Whether the faces have handles, and the sphere has far more energy, even after flips.
   bool hasSureHandles() {
+    constexpr double max_filling = 0.01;
     if (!has_sure_handles_)
-      has_sure_handles_ = facesGenus() > 0 && flippedEnergy(sphere()) >
-                                                  kSureGain * flippedEnergy(facesWithAllNodes());
+      has_sure_handles_ =
+          facesGenus() > 0 && isFilledUpTo(max_filling) &&
+          flippedEnergy(sphere()) > kSureGain * flippedEnergy(allFaces(*plan_.faces()));
     return *has_sure_handles_;
   }
 
-  Triangles facesWithAllNodes() { return withAllNodes(points_, graph_, plan_.faces()->triangles); }
+  Triangles allFaces(const FaceMesh& faces) {
+    return withAllNodes(points_, graph_, faces.triangles);
+  }
+
+  /// Whether there is no sound mesh, or one with handles may be better.
+  bool mayFacesHelp() {
+    if (are_faces_tried_ || !mayUseFaces() || (facesGenus() > 0 && !mayHaveHandles()))
+      return false;
+    return !isSound() ||
+           (facesGenus() > best_->genus && flippedEnergy(allFaces(*plan_.faces())) <
+                                               (1.0 - kMinGain) * best_->energy);
+  }
 
   std::optional<Outcome> meshFaces() {
     are_faces_tried_ = true;
-    std::optional<FaceMesh> faces = *plan_.faces();
-    if (faces->genus > 0 && !mayHaveHandles())
-      faces = withoutHandles(points_, graph_, std::move(*faces));
-    if (!faces)
-      return std::nullopt;
-    clock_.noteMesh();
-    return finished(withAllNodes(points_, graph_, faces->triangles), {});
+    return finished(allFaces(*plan_.faces()), {});
   }
 
-  bool areFacesLeft() {
-    return !are_faces_tried_ && (removesIntersections(options_) || mayHaveHandles()) &&
-           plan_.faces() != nullptr;
+  bool areHandlesDoubtful() {
+    return mayUseFaces() && facesGenus() > 0 && !(mayHaveHandles() && hasSureHandles()) &&
+           (!isSound() || best_->genus > 0);
+  }
+
+  std::optional<Outcome> meshFacesWithoutHandles() {
+    const std::optional<FaceMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
+    return faces ? std::optional(finished(allFaces(*faces), {})) : std::nullopt;
   }
 
   // --- 2. The sphere
 
-  bool mayBeSphere() { return !best_ || !mayHaveHandles() || !has_sure_handles_.value_or(false); }
+  bool mayBeSphere() {
+    return !isSound() && !(mayHaveHandles() && has_sure_handles_.value_or(false));
+  }
 
   const Triangles& sphere() {
     if (!sphere_) {
@@ -147,7 +167,6 @@ private:
       clock_.begin("triangulation");
       sphere_ = triangulateSphere(embedding_.directions, clock_.execution());
       orientOutward(points_, *sphere_, embedding_);
-      clock_.noteMesh();
     }
     return *sphere_;
   }
@@ -181,8 +200,7 @@ private:
   // --- 3. All openings open
 
   bool mayOpenAll() {
-    // If so many triangles intersect, it is the embedding that is wrong.
-    return removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
+    return !isSound() && removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
            plan_.openings().fillsPossible();
   }
 

@@ -20,6 +20,9 @@
 namespace spherical_param::internal {
 namespace {
 
+/// Larger faces may be openings, or beside a false edge: they stay loops at first.
+constexpr std::size_t kMaxCorners = 12;
+
 using TriangleList = std::vector<std::array<Index, 3>>;
 
 Triangles matrixOf(const TriangleList& list) {
@@ -87,10 +90,81 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
   return true;
 }
 
+/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times the
+/// angles there, and the longest sides. None of the new edges is there already.
+///
+/// \param loop, edges, triangles as for cutIntoTriangles().
+/// \param beyond unit normals of the triangles beyond the sides of the loop.
+bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
+                   const std::vector<Eigen::Vector3d>& beyond, EdgeSet& edges,
+                   TriangleList& triangles) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  constexpr double mu = 0.3;
+  const auto n = static_cast<Index>(loop.size());
+  const auto point = [&](Index i) -> Eigen::Vector3d {
+    return points.col(loop[static_cast<std::size_t>(i)]);
+  };
+  const auto bend = [](const Eigen::Vector3d& edge, const Eigen::Vector3d& normal,
+                       const Eigen::Vector3d& other) {
+    return edge.norm() * std::acos(std::clamp(normal.dot(other), -1.0, 1.0));
+  };
+  /// The best triangles over the corners from one to another.
+  struct Best {
+    double cost = none;
+    Index tip = -1;
+    Eigen::Vector3d normal;  ///< of the triangle at the side between them
+  };
+  std::vector<Best> all(loop.size() * loop.size());
+  const auto best = [&](Index i, Index j) -> Best& {
+    return all[static_cast<std::size_t>(i * n + j)];
+  };
+  for (Index i = 0; i + 1 < n; ++i)
+    best(i, i + 1) = {0.0, -1, beyond[static_cast<std::size_t>(i)]};
+  for (Index steps = 2; steps < n; ++steps)
+    for (Index i = 0; i + steps < n; ++i) {
+      const Index j = i + steps;
+      if (steps + 1 < n && edges.count(keyOf(loop[static_cast<std::size_t>(i)],
+                                             loop[static_cast<std::size_t>(j)])) > 0)
+        continue;
+      const Eigen::Vector3d p = point(i);
+      const Eigen::Vector3d edge = point(j) - p;
+      Best& of = best(i, j);
+      for (Index k = i + 1; k < j; ++k) {
+        const Best& first = best(i, k);
+        const Best& second = best(k, j);
+        double cost = first.cost + second.cost;
+        if (!(cost < of.cost))
+          continue;
+        const Eigen::Vector3d to = point(k) - p;
+        const Eigen::Vector3d normal = to.cross(edge).normalized();
+        const Eigen::Vector3d back = edge - to;
+        cost += bend(to, normal, first.normal) + bend(back, normal, second.normal) +
+                mu * std::max({to.norm(), edge.norm(), back.norm()});
+        if (steps + 1 == n)
+          cost += bend(edge, normal, beyond.back());
+        if (cost < of.cost)
+          of = {cost, k, normal};
+      }
+    }
+  if (!(best(0, n - 1).cost < none))
+    return false;
+  std::vector<std::pair<Index, Index>> due{{0, n - 1}};
+  while (!due.empty()) {
+    const auto [i, j] = due.back();
+    due.pop_back();
+    if (j - i < 2)
+      continue;
+    const Index k = best(i, j).tip;
+    const auto node = [&](Index at) { return loop[static_cast<std::size_t>(at)]; };
+    triangles.push_back({node(i), node(k), node(j)});
+    edges.insert(keyOf(node(i), node(j)));
+    due.insert(due.end(), {{i, k}, {k, j}});
+  }
+  return true;
+}
+
 /// The triangles of the faces.
 TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation) {
-  // Larger faces may be openings, or beside a false edge: they stay loops at first.
-  constexpr std::size_t max_corners = 12;
   TriangleList triangles;
   EdgeSet edges;
   const NeighborRows& graph = rotation.edges();
@@ -103,7 +177,7 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
     const std::vector<Index> face(faces.row(i).begin(), faces.row(i).end());
     std::vector<Index> nodes = face;
     sortUnique(nodes);
-    if (face.size() <= max_corners && nodes.size() == face.size())
+    if (face.size() <= kMaxCorners && nodes.size() == face.size())
       cutIntoTriangles(points, face, edges, triangles);
   }
   return triangles;
@@ -164,6 +238,7 @@ Triangles withoutPinches(const Triangles& triangles, std::size_t vertices) {
 /// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
 Triangles closed(const Positions& points, const Triangles& open) {
   const std::size_t vertices = columnCount(points);
+  const CornerTable corners(open, vertices, 1);
   UnionFind pieces = piecesOf(open, vertices);
   EdgeSet edges;
   for (const auto& t : open.colwise())
@@ -171,9 +246,25 @@ Triangles closed(const Positions& points, const Triangles& open) {
       edges.insert(keyOf(t[k], t[(k + 1) % 3]));
   TriangleList fillings;
   Indexed<char> is_left_out(vertices, 0);
+  // Its time grows with the cube of a loop.
+  constexpr std::size_t most = 150;
   for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
     std::reverse(loop.begin(), loop.end());
-    if (!cutIntoTriangles(points, loop, edges, fillings))
+    const auto normals = [&] {
+      std::vector<Eigen::Vector3d> beyond;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Index v = loop[i];
+        const Index w = loop[(i + 1) % loop.size()];
+        corners.forEachCorner(w, [&](Index t, Index k) {
+          if (open(nextCorner(k), t) == v)
+            beyond.push_back(areaNormal(points, open, t).normalized());
+        });
+      }
+      return beyond;
+    };
+    const bool is_wide = loop.size() > 3 && loop.size() <= most;
+    if (!(is_wide && cutIntoSmooth(points, loop, normals(), edges, fillings)) &&
+        !cutIntoTriangles(points, loop, edges, fillings))
       is_left_out[pieces.find(loop.front())] = 1;
   }
   Triangles all(3, open.cols() + static_cast<Eigen::Index>(fillings.size()));
