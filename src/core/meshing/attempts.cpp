@@ -22,7 +22,7 @@ namespace {
 
 /// Handles are certain if the mesh without them has so many times the energy after flips; others
 /// must save this fraction of it after the optimisation.
-constexpr double kSureGain = 1.8;
+constexpr double kSureGain = 2.1;
 constexpr double kMinGain = 0.05;
 
 /// The genus of a closed mesh in one piece over all vertices.
@@ -40,16 +40,6 @@ struct Outcome {
   std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
 };
 
-bool isBetter(const Outcome& mesh, const Outcome& than) {
-  if (mesh.intersecting() != than.intersecting())
-    return mesh.intersecting() < than.intersecting();
-  if (mesh.genus > than.genus)
-    return mesh.energy < (1.0 - kMinGain) * than.energy;
-  if (mesh.genus < than.genus)
-    return !isBetter(than, mesh);
-  return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
-}
-
 /// The ways to mesh a part: the rows of a table, in the order in which they are tried.
 class Attempts {
 public:
@@ -63,7 +53,7 @@ public:
       std::optional<Outcome> (Attempts::*mesh)();
     };
     static constexpr Row rows[] = {
-        {&Attempts::areFacesSure, &Attempts::meshFaces},
+        {&Attempts::areFacesGood, &Attempts::meshFaces},
         {&Attempts::mayBeSphere, &Attempts::meshSphere},
         {&Attempts::mayFacesHelp, &Attempts::meshFaces},
         {&Attempts::areHandlesDoubtful, &Attempts::meshFacesWithoutHandles},
@@ -96,48 +86,87 @@ private:
     return best_ && best_->part.intersecting.pairs.empty() && best_->left_out == 0;
   }
 
+  /// Fewer intersections, then more points, then less energy. More handles must save energy, unless
+  /// the faces show them.
+  bool isBetter(const Outcome& mesh, const Outcome& than) {
+    constexpr std::size_t few_of = 1000;
+    if (mesh.intersecting() != than.intersecting())
+      return mesh.intersecting() < than.intersecting();
+    if (mesh.genus < than.genus)
+      return !isBetter(than, mesh);
+    if (mesh.genus == than.genus)
+      return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
+    const std::size_t few = graph_.size() / few_of;
+    if (mesh.left_out > than.left_out + few || than.left_out > mesh.left_out + few)
+      return mesh.left_out < than.left_out;
+    if (saveHandles())
+      return (1.0 - kMinGain) * mesh.energy < than.energy;
+    return mesh.left_out <= than.left_out && mesh.energy < (1.0 - kMinGain) * than.energy;
+  }
+
   // --- 1. The faces of the graph
 
   bool mayUseFaces() {
     return (removesIntersections(options_) || mayHaveHandles()) && plan_.faces() != nullptr;
   }
 
-  /// Whether faces beyond those of the graph are at most a fraction.
-  bool isFilledUpTo(double fraction) {
+  /// The triangles that are in no face of the graph, without those over openings, as a fraction.
+  double defects() {
     const auto& is_filling = plan_.faces()->is_filling;
-    const auto filling = std::count(is_filling.begin(), is_filling.end(), std::uint8_t{1});
-    return static_cast<double>(filling) <= fraction * static_cast<double>(is_filling.size());
+    auto filling = std::count(is_filling.begin(), is_filling.end(), std::uint8_t{1});
+    for (const Opening& opening : plan_.openings().embeddedOpenings().openings)
+      filling -= static_cast<std::ptrdiff_t>(opening.loop.size()) - 2;
+    return static_cast<double>(filling) / static_cast<double>(is_filling.size());
   }
 
-  /// Whether the faces close up with hardly a defect.
-  bool areFacesSure() {
-    constexpr double max_filling = 0.001;
+  /// Whether the faces close up with hardly a defect, or have handles that cost the sphere far more
+  /// energy.
+  bool areFacesGood() {
+    constexpr double max_defects = 0.001;
     if (!mayUseFaces() || plan_.openings().isOneSided())
       return false;
-    return facesGenus() == 0 ? isFilledUpTo(max_filling) : mayHaveHandles() && hasSureHandles();
+    return facesGenus() == 0 ? defects() <= max_defects : mayHaveHandles() && saveHandles();
   }
 
-  /// Whether the faces have handles, and the sphere has far more energy, even after flips.
+  bool saveHandles() {
+    if (!save_handles_)
+      save_handles_ =
+          facesGenus() > 0 && kSureGain * facesEnergy() < flippedEnergy(sphere());
+    return *save_handles_;
+  }
+
+  /// Whether the faces have handles for sure.
   bool hasSureHandles() {
-    constexpr double max_filling = 0.01;
-    if (!has_sure_handles_)
-      has_sure_handles_ =
-          facesGenus() > 0 && isFilledUpTo(max_filling) &&
-          flippedEnergy(sphere()) > kSureGain * flippedEnergy(allFaces(*plan_.faces()));
-    return *has_sure_handles_;
+    constexpr double max_defects = 0.01;
+    return facesGenus() > 0 && defects() <= max_defects && saveHandles();
   }
 
   Triangles allFaces(const FaceMesh& faces) {
     return withAllNodes(points_, graph_, faces.triangles);
   }
 
-  /// Whether there is no sound mesh, or one with handles may be better.
+  double facesEnergy() {
+    if (!faces_energy_)
+      faces_energy_ = flippedEnergy(allFaces(*plan_.faces()));
+    return *faces_energy_;
+  }
+
+  /// Whether a mesh of some energy after flips may be better than the best one.
+  bool mayHelp(double energy, std::size_t genus) const {
+    // The optimisation hardly lowers the energy of a mesh that becomes sound.
+    constexpr double max_energy = 1.05;
+    const double most = genus == best_->genus ? max_energy : 1.0 - kMinGain;
+    return best_->intersecting() > 0 || energy < most * best_->energy;
+  }
+
   bool mayFacesHelp() {
     if (are_faces_tried_ || !mayUseFaces() || (facesGenus() > 0 && !mayHaveHandles()))
       return false;
-    return !isSound() ||
-           (facesGenus() > best_->genus && flippedEnergy(allFaces(*plan_.faces())) <
-                                               (1.0 - kMinGain) * best_->energy);
+    // Noise makes false handles.
+    constexpr double max_defects = 0.05;
+    if (isSound() && (facesGenus() <= best_->genus || defects() > max_defects))
+      return false;
+    return mayHelp(facesEnergy(), facesGenus());
   }
 
   std::optional<Outcome> meshFaces() {
@@ -152,14 +181,17 @@ private:
 
   std::optional<Outcome> meshFacesWithoutHandles() {
     const std::optional<FaceMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
-    return faces ? std::optional(finished(allFaces(*faces), {})) : std::nullopt;
+    if (!faces)
+      return std::nullopt;
+    const Triangles triangles = allFaces(*faces);
+    if (saveHandles() && !mayHelp(flippedEnergy(triangles), 0))
+      return std::nullopt;
+    return finished(triangles, {});
   }
 
   // --- 2. The sphere
 
-  bool mayBeSphere() {
-    return !isSound() && !(mayHaveHandles() && has_sure_handles_.value_or(false));
-  }
+  bool mayBeSphere() { return !isSound(); }
 
   const Triangles& sphere() {
     if (!sphere_) {
@@ -200,7 +232,10 @@ private:
   // --- 3. All openings open
 
   bool mayOpenAll() {
-    return !isSound() && removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
+    // So many triangles of one are a tangle.
+    constexpr std::size_t tangle_of = 1000;
+    return (best_->intersecting() > 0 || tangle_of * best_->left_out > 2 * graph_.size()) &&
+           removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
            plan_.openings().fillsPossible();
   }
 
@@ -266,7 +301,8 @@ private:
   StageClock& clock_;
   std::optional<Outcome> best_;
   bool are_faces_tried_ = false;
-  std::optional<bool> has_sure_handles_;
+  std::optional<bool> save_handles_;
+  std::optional<double> faces_energy_;  ///< after flips
   std::optional<Triangles> sphere_;
   Embedding embedding_;
 };
