@@ -78,8 +78,7 @@ public:
   void optimize(Candidate& candidate) {
     if (candidate.optimization)
       return;
-    Execution execution = clock_.execution();
-    execution.time_limit = clock_.remaining();
+    Execution execution = clock_.limited();
     // The other half is for the smoothed points, which get an optimisation of their own.
     const bool is_smoothed = options_.smoothing > 0;
     if (is_smoothed && execution.time_limit)
@@ -150,7 +149,6 @@ private:
       result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
     clock_.begin("triangulation");
     result.triangles = triangulateSphere(result.embedding.directions, clock_.execution());
-    clock_.noteMesh();
     orientOutward(points_, result.triangles, result.embedding);
     return result;
   }
@@ -163,7 +161,6 @@ private:
                               openings_.embeddedOpenings(), options_, clock_.execution());
     if (!mesh)
       return std::nullopt;
-    clock_.noteMesh();
     Candidate result;
     result.handles = cut.handles;
     result.triangles = std::move(mesh->triangles);
@@ -180,8 +177,7 @@ private:
 
   /// The energy of a mesh whose edges are flipped.
   double flippedEnergy(const Candidate& candidate) {
-    Execution execution = clock_.execution();
-    execution.time_limit = clock_.remaining();
+    Execution execution = clock_.limited();
     clock_.begin("optimization");
     return energy(flipMesh(points_, candidate.triangles, graph_,
                            {openings_.places(), false, options_.seed}, execution));

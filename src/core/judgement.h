@@ -2,16 +2,23 @@
 
 #include "meshed_cloud.h"
 #include "open_surface.h"
+#include "smooth_fill.h"
 #include "spherical_param/options.h"
 #include "spherical_param/result.h"
 
 namespace spherical_param::internal {
 
-/// Measures, checks and diagnoses a mesh. The result is on nodes and in their unit, \see toInput.
+/// Measures and checks a mesh. Every surface is written here.
 ///
-/// \param triangles of the mesh that are not over openings.
-/// \param is_clean  none of them intersect.
-Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bool is_clean,
-              const OpenSurface& openings, const Options& options, const Execution& execution);
+/// \param diagnosis of the mesh before triangles were added.
+Surface judge(FinishedMesh mesh, SurfaceDiagnosis diagnosis, const Options& options);
+
+/// The same, with a diagnosis by the graph. The result is on nodes and in their unit, \see toInput.
+///
+/// \param triangles of the mesh on the nodes alone.
+/// \param finished  mesh that is written.
+Surface judge(const Positions& points, MeshedCloud mesh, const Triangles& triangles,
+              FinishedMesh finished, const OpenSurface& openings, const Options& options,
+              const Execution& execution);
 
 }  // namespace spherical_param::internal

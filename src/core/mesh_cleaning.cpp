@@ -96,11 +96,6 @@ std::optional<std::size_t> cleanMesh(const Positions& points, bool is_open, cons
   }
   if (!left_out && may_open && !mesh.isSmoothed())
     left_out = takeFaces(points, execution, mesh, open);
-  if (!left_out)
-    return std::nullopt;
-  mesh.smoothed.intersecting_triangles = 0;
-  mesh.smoothed.is_sample = false;
-  mesh.smoothed.report.self_intersections = 0;
   return left_out;
 }
 

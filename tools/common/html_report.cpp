@@ -180,9 +180,8 @@ Json addHandles(const CloudReconstruction& cloud, const std::vector<const Surfac
   Json handles = Json::array();
   std::vector<double> loops;
   for (const Surface* surface : surfaces) {
-    const Positions positions = vertexPositions(cloud, *surface);
     for (const HandleLoop& handle : surface->handles) {
-      const Positions loop = positions(Eigen::all, handle.loop);
+      const Positions loop = surface->points(Eigen::all, handle.loop);
       loops.insert(loops.end(), loop.data(), loop.data() + loop.size());
       handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
     }
@@ -254,7 +253,7 @@ Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays&
     ordered.push_back(places[static_cast<std::size_t>(i)]);
     vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
-  const Positions positions = vertexPositions(cloud, result)(Eigen::all, vertices);
+  const Positions positions = result.points(Eigen::all, vertices);
   arrays.addPoints("history_positions", positions, boxOf(positions));
   arrays.addTriangles("history_triangles", triangulateSphere(end(Eigen::all, ordered)));
   const auto width = static_cast<Eigen::Index>(count);
@@ -341,10 +340,10 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
       triangles += surface.triangles.cols();
       edge_lengths +=
           surface.measures.mean_edge_length * static_cast<double>(surface.vertexCount());
-      has_moved = has_moved || surface.moved().cols() > 0;
+      has_moved = has_moved || surface.consolidation || surface.smoothing;
     }
   }
-  const ReportMesh mesh = reportMesh(cloud, surfaces, input.threads);
+  const ReportMesh mesh = reportMesh(cloud, surfaces);
   Arrays arrays;
   addMesh(mesh, arrays);
   addCloud(cloud, has_moved, mesh, arrays);
