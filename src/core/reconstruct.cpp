@@ -136,6 +136,7 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
   }
   const std::optional<std::size_t> left_out =
       cleanMesh(points, openings.isOpen(), options, clock.execution(), mesh, open);
+  reportFraction(reportOf(clock.execution(), "cleaning"), 0.5);
   FinishedMesh finished;
   finished.faced_by = orient(points, info, open, mesh.embedding);
   const Triangles triangles = surfaceOf(open);
