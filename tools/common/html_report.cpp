@@ -175,8 +175,8 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
 }
 
 /// Adds the loops of the handles, one after the other, and returns what each of them is.
-Json addHandles(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
-                const ReportMesh& mesh, Arrays& arrays) {
+Json addHandles(const std::vector<const Surface*>& surfaces, const ReportMesh& mesh,
+                Arrays& arrays) {
   Json handles = Json::array();
   std::vector<double> loops;
   for (const Surface* surface : surfaces) {
@@ -234,7 +234,7 @@ void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh
 }
 
 /// Adds the unfolding, and returns its frames.
-Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays& arrays) {
+Json addHistory(const Surface& result, Arrays& arrays) {
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
@@ -369,9 +369,8 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   }
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = sphereTurn(mesh);
-  json["handles"] = addHandles(cloud, surfaces, mesh, arrays);
-  json["frames"] =
-      surfaces.size() == 1 ? addHistory(cloud, *surfaces.front(), arrays) : Json::array();
+  json["handles"] = addHandles(surfaces, mesh, arrays);
+  json["frames"] = surfaces.size() == 1 ? addHistory(*surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));

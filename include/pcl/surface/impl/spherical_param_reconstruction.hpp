@@ -97,7 +97,10 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonM
       point_of_vertex[v] = static_cast<pcl::index_t>(cloud.size() - 1);
     }
     PointInT& point = cloud[static_cast<std::size_t>(point_of_vertex[v])];
-    point.getVector3fMap() = mesh.points.col(static_cast<Eigen::Index>(v)).template cast<float>();
+    const auto place = mesh.points.col(static_cast<Eigen::Index>(v)).template cast<float>();
+    point.x = place.x();
+    point.y = place.y();
+    point.z = place.z();
   }
   pcl::toPCLPointCloud2(cloud, output.cloud);
   output.polygons = detail::polygonsOf(mesh.triangles, point_of_vertex);
