@@ -157,8 +157,9 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
     fillSmoothly(clock.limited(), finished);
   }
   clock.begin("quality");
-  Surface surface = judge(points, std::move(mesh), triangles, std::move(finished), openings,
-                          options, clock.execution());
+  mesh.is_one_sided = openings.isOneSided();
+  Surface surface =
+      judge(points, std::move(mesh), triangles, std::move(finished), options, clock.execution());
   surface.left_out_triangles = left_out.value_or(0);
   return surface;
 }

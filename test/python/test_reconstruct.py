@@ -93,7 +93,7 @@ class Mesh(shapes.InFolder):
         header, _, body = path.read_bytes().partition(b"end_header\n")
         self.assertIn(b"\nproperty uchar added\n", header)
         np.testing.assert_array_equal(np.frombuffer(body, record, len(marks))["added"], marks)
-        both.write(path)
+        both[1].write(path)
         self.assertNotIn(b"added", path.read_bytes())
         with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
             sp.sphere_map(mesh)

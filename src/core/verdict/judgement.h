@@ -1,7 +1,6 @@
 #pragma once
 
 #include "meshed_cloud.h"
-#include "open_surface.h"
 #include "smooth_fill.h"
 #include "spherical_param/options.h"
 #include "spherical_param/result.h"
@@ -18,7 +17,6 @@ Surface judge(FinishedMesh mesh, SurfaceDiagnosis diagnosis, const Options& opti
 /// \param triangles of the mesh on the nodes alone.
 /// \param finished  mesh that is written.
 Surface judge(const Positions& points, MeshedCloud mesh, const Triangles& triangles,
-              FinishedMesh finished, const OpenSurface& openings, const Options& options,
-              const Execution& execution);
+              FinishedMesh finished, const Options& options, const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -16,6 +16,7 @@ struct MeshedCloud {
   Embedding embedding;              ///< without directions if the mesh has handles
   MeshOptimization optimization;
   bool has_certain_triangles_only = false;  ///< see Surface
+  bool is_one_sided = false;                ///< the surface of the graph is
   SmoothedMesh smoothed;                    ///< empty without smoothing
 
   bool isSmoothed() const { return smoothed.points.cols() > 0; }

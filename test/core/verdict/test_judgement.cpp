@@ -1,6 +1,6 @@
+#include "core/reconstructions.h"
 #include "handle_shapes.h"
 #include "paper_method.h"
-#include "reconstructions.h"
 
 namespace spherical_param::test {
 namespace {

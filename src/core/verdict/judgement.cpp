@@ -42,8 +42,7 @@ Surface judge(FinishedMesh mesh, SurfaceDiagnosis diagnosis, const Options& opti
 }
 
 Surface judge(const Positions& points, MeshedCloud mesh, const Triangles& triangles,
-              FinishedMesh finished, const OpenSurface& openings, const Options& options,
-              const Execution& execution) {
+              FinishedMesh finished, const Options& options, const Execution& execution) {
   const FractionReport report = reportOf(execution, "quality");
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
@@ -53,7 +52,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const Triangles& triang
   SurfaceDiagnosis diagnosis =
       diagnoseSurface(points, triangles, mesh.graph.graph, mesh.graph.bridges, finished.openings,
                       of_diagnosis, options.threads);
-  if (openings.isOneSided()) {
+  if (mesh.is_one_sided) {
     diagnosis.is_one_sided = true;
     diagnosis.kind = SurfaceKind::Unclear;
   }

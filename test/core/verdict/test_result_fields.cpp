@@ -1,6 +1,6 @@
 #include "spherical_param/result_fields.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 #include "result_units.h"
 
 #include <cstring>

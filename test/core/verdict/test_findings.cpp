@@ -1,6 +1,6 @@
 #include "findings.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 
 namespace spherical_param::test {
 namespace {
