@@ -51,7 +51,7 @@ def mesh(cloud, name, *options):
     """Meshes a cloud; how many pairs of triangles intersect in the mesh that is written."""
     run("reconstruction", cloud, f"{name}.ply", "-json", "report.json", *options)
     report = json.loads(pathlib.Path("report.json").read_text())
-    count = (report["smoothing"] if "-smoothing" in options else report)["self_intersections"]
+    count = report["self_intersections"]
     return f"{count:,} self-intersection{'' if count == 1 else 's'}"
 
 

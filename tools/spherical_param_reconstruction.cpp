@@ -198,7 +198,7 @@ std::string movedBy(const Settings& settings, const std::vector<Surface>& surfac
   double most = 0.0;
   for (const Surface& surface : surfaces) {
     const auto count = static_cast<double>(surface.inputs.size());
-    const ConsolidationReport& moved = surface.consolidation;
+    const ConsolidationReport& moved = *surface.consolidation;
     points += count;
     noise += count * moved.noise;
     mean += count * moved.mean_displacement;
@@ -243,7 +243,7 @@ void writePage(const Settings& settings, CloudReconstruction& cloud, const Surfa
   OutputFile& file = run.open(settings.page);
   writeHtmlReport(file, {toolText().name, settings.command,
                          surface ? report(settings, cloud, *surface) : report(settings, cloud),
-                         &cloud, surface, settings.reconstruction.options.threads});
+                         &cloud, surface});
   file.finish();
   cloud.stages.push_back(run.console.end());
 }
@@ -252,9 +252,10 @@ void writePage(const Settings& settings, CloudReconstruction& cloud, const Surfa
 /// the largest, but for those that one place sees, which are on one sphere.
 void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& run) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
+  const JoinedMesh mesh = joined(cloud.result);
   const bool is_numbered = isNumbered(settings.output);
   if (!is_numbered) {
-    writeMeshFile(settings, JoinedMesh(cloud).view(), cloud, run);
+    writeMeshFile(settings, meshOf(cloud, mesh), cloud, run);
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Settings of_part = settingsOf(settings, i);
@@ -264,14 +265,15 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& r
     }
     if (!settings.sphere.empty() &&
         (isNumbered(settings.sphere) || (i == 0 && !cloud.result.view))) {
-      run.write(of_part.sphere, sphereOf(cloud, surfaces[i], surfaces[i].sphere));
+      run.write(of_part.sphere, sphereOf(cloud, surfaces[i].input_of_vertex, surfaces[i].triangles,
+                                         surfaces[i].sphere));
     }
     if (isNumbered(settings.page)) {
       writePage(of_part, cloud, &surfaces[i], run);
     }
   }
   if (cloud.result.view && !settings.sphere.empty() && !isNumbered(settings.sphere)) {
-    run.write(settings.sphere, JoinedMesh(cloud, true).view());
+    run.write(settings.sphere, sphereOf(cloud, mesh.input_of_vertex, mesh.triangles, mesh.sphere));
   }
   if (!settings.page.empty() && !isNumbered(settings.page)) {
     writePage(settings, cloud, nullptr, run);

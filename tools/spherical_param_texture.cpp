@@ -233,8 +233,8 @@ Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Out
 void store(const Settings& settings, const MappedCloud& mapped, Output& output, ToolRun& run) {
   run.console.begin("write");
   const auto& surface = mapped.cloud.surface();
-  const Positions points = vertexPositions(mapped.cloud, surface).colwise() -
-                           Eigen::Map<const Eigen::Vector3d>(mapped.cloud.offset.data());
+  const Positions points =
+      surface.points.colwise() - Eigen::Map<const Eigen::Vector3d>(mapped.cloud.offset.data());
   const PointData vertices = verticesOf(output.atlas, points, surface.triangles);
   MeshTexture texture;
   texture.png = encodePng(output.image);

@@ -12,7 +12,8 @@ namespace spherical_param {
 /// How far a computation is, as reported to Execution::progress.
 struct Progress {
   /// Of reconstruct(): "view", "neighbors", "graph", "outliers", "parts", "consolidation",
-  /// "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality".
+  /// "openings", "embedding", "triangulation", "optimization", "smoothing", "cleaning", "fill" or
+  /// "quality".
   const char* stage;
   /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops,
   /// and "openings" comes back where a surface is cut.
@@ -29,10 +30,10 @@ struct Execution {
   /// and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
   /// Wall time after which the work ends with the best mesh so far [s]; [0, 1e9]. Unset: no limit.
-  /// 0: the work ends with the first mesh, however long that takes. Where there is no mesh in time,
-  /// the work fails, or leaves out that part. Parts share it in proportion to their points; before
-  /// smoothing, the optimisation gets half of the remaining time. If it ends the work, handles and
-  /// folds are not distinguished. The mesh then depends on the machine.
+  /// The first mesh of each part is finished, however long that takes; 0: the work ends with it.
+  /// Parts share the limit in proportion to their points; before smoothing, the optimisation gets
+  /// half of the remaining time, before FillMode::Smooth four fifths. If it ends the work, handles
+  /// and folds are not distinguished. The mesh then depends on the machine.
   std::optional<double> time_limit = {};
 };
 

@@ -154,13 +154,11 @@ struct Options : Execution {
   /// Minimum number of distinct points of a part; >= 4. Smaller parts are left out. No effect with
   /// PartsMode::All.
   int min_points = 50;
-  /// Whether points are consolidated before meshing. The mesh then goes through
-  /// Surface::consolidated.
+  /// Whether points are consolidated before meshing.
   ConsolidationMode consolidation = ConsolidationMode::None;
   EmbeddingOptions embedding;  ///< how the graph is embedded
-  /// Strength of smoothing, in steps of the paper's section 4.2; [0, 10000], 0: none. The result is
-  /// Surface::smoothed; the input points stay. Method::Default then optimises the mesh on the
-  /// smoothed points.
+  /// Strength of smoothing, in steps of the paper's section 4.2; [0, 10000], 0: none.
+  /// Method::Default then optimises the mesh on the smoothed points.
   int smoothing = 0;
 
   /// Whether openings are filled. Only Method::Default finds them. Its embedding leaves room for

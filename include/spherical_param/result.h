@@ -192,12 +192,11 @@ struct EmbeddingHistory {
 
 /// Distance of a smoothed surface from the given one.
 struct SmoothingReport {
-  double max_displacement = 0.0;       ///< of a point [unit of the input]
-  double mean_displacement = 0.0;      ///< over the points of triangles [unit of the input]
-  double rms_displacement = 0.0;       ///< over the points of triangles [unit of the input]
-  double volume_before = 0.0;          ///< signed volume enclosed [cubed unit of the input]
-  double volume_after = 0.0;           ///< signed volume enclosed [cubed unit of the input]
-  std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points, or a sample
+  double max_displacement = 0.0;   ///< of a point [unit of the input]
+  double mean_displacement = 0.0;  ///< over the points of triangles [unit of the input]
+  double rms_displacement = 0.0;   ///< over the points of triangles [unit of the input]
+  double volume_before = 0.0;      ///< signed volume enclosed [cubed unit of the input]
+  double volume_after = 0.0;       ///< signed volume enclosed [cubed unit of the input]
 };
 
 /// What decided which side of a surface its triangles face.
@@ -211,6 +210,9 @@ enum class FacedBy {
 /// A mesh through all points, its map to the sphere, and their quality. The mesh is a closed,
 /// oriented manifold, or such a mesh without the triangles over openings.
 struct Surface {
+  /// 3 x v, the vertices as they are written: points of the input, consolidated and smoothed if
+  /// that was asked for, then those that were added in filled openings [unit of the input].
+  Positions points;
   /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 + 4g of a closed mesh
   /// of genus g.
   Triangles triangles;
@@ -232,15 +234,7 @@ struct Surface {
 
   /// Pairs of triangles that intersect, ascending: all, or a sample. \see findSelfIntersections
   std::vector<std::array<Index, 2>> self_intersections;
-  /// 3 x v, the points after smoothing; empty without smoothing [unit of the input].
-  Positions smoothed;
-  /// 3 x v, the points after consolidation, before smoothing; empty without consolidation [unit of
-  /// the input]. All but `smoothed` refers to them.
-  Positions consolidated;
-  /// 3 x v, the vertices with those that were added, which come last; empty if none were. All but
-  /// `embedding` refers to them [unit of the input].
-  Positions filled;
-  std::size_t added_vertices = 0;   ///< in filled openings, by FillMode::Smooth
+  std::size_t added_vertices = 0;   ///< in filled openings, by FillMode::Smooth; they come last
   std::size_t smoothly_filled = 0;  ///< openings that have them
   /// How the embedding unfolded to `sphere`; empty without EmbeddingOptions::history_vertices.
   EmbeddingHistory history;
@@ -253,17 +247,16 @@ struct Surface {
   std::vector<Index> outliers;
 
   MeshTopology topology;       ///< checked on `triangles`
-  MeshMeasures measures;       ///< of the mesh on the input or consolidated points
+  MeshMeasures measures;       ///< of the mesh
   SurfaceDiagnosis diagnosis;  ///< whether the cloud looks like a closed genus-0 surface
 
-  ConsolidationReport consolidation;  ///< all zero without consolidation
-  EmbeddingReport embedding;          ///< how the embedding was reached
-  SmoothingReport smoothing;          ///< all zero without smoothing
-  bool is_noisy = false;              ///< the points look noisy, and are on no grid
-  bool is_out_of_time = false;        ///< the time limit ended the optimisation early
+  std::optional<ConsolidationReport> consolidation;  ///< unset without consolidation
+  EmbeddingReport embedding;                         ///< how the embedding was reached
+  std::optional<SmoothingReport> smoothing;          ///< unset without smoothing
+  bool is_noisy = false;                             ///< the points look noisy, and are on no grid
+  bool is_out_of_time = false;  ///< the time limit ended optimisation or filling early
 
-  /// Triangles that intersect others, on the smoothed points if the mesh was smoothed.
-  std::size_t intersecting_triangles = 0;
+  std::size_t intersecting_triangles = 0;  ///< triangles that intersect others
   /// The search for intersections ended early, as more than 1 % of the triangles intersect: there
   /// may be more pairs, and more such triangles.
   bool intersections_are_sampled = false;
@@ -288,11 +281,6 @@ struct Surface {
   }
   /// Number of distinct points and added vertices. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
-  /// The moved vertices. \return `filled`, `smoothed` or `consolidated`, the first that is not
-  /// empty; empty if the vertices are input points
-  const Positions& moved() const {
-    return filled.cols() > 0 ? filled : smoothed.cols() > 0 ? smoothed : consolidated;
-  }
   /// Number of certain openings that the mesh fills. \return the number
   std::size_t filledOpenings() const {
     return static_cast<std::size_t>(
@@ -313,7 +301,7 @@ struct Surface {
   /// Whether the mesh is folded. A smoothed mesh without intersections is not.
   /// \return true if too many of its edges leave the graph
   bool isFolded() const {
-    return diagnosis.isFolded() && (smoothed.cols() == 0 || intersecting_triangles > 0);
+    return diagnosis.isFolded() && (!smoothing || intersecting_triangles > 0);
   }
   /// Whether volume, centroid and inertia of `measures` mean something.
   /// \return true if the mesh is closed, usable and not folded
@@ -321,7 +309,8 @@ struct Surface {
   /// Number of points that repeat an earlier one. \return n - v, minus the points that
   /// consolidation merged
   std::size_t duplicates() const {
-    return vertex_of_input.size() + added_vertices - input_of_vertex.size() - consolidation.merged;
+    return vertex_of_input.size() + added_vertices - input_of_vertex.size() -
+           (consolidation ? consolidation->merged : 0);
   }
 };
 
@@ -371,6 +360,22 @@ struct Result {
                        [](const Surface& surface) { return surface.isUsable(); });
   }
 };
+
+/// All surfaces of a result as one mesh: the vertices and triangles of one after those of the
+/// other.
+struct JoinedMesh {
+  Positions points;     ///< 3 x v, Surface::points [unit of the input]
+  Triangles triangles;  ///< 3 x m, indices of vertices
+  Positions sphere;     ///< 3 x v, Surface::sphere; empty unless each surface has one
+  std::vector<Index> input_of_vertex;  ///< v entries, Surface::input_of_vertex
+  std::vector<std::uint8_t> is_added;  ///< v entries, 1 of vertices added in filled openings
+};
+
+/// Joins the surfaces of a result.
+///
+/// \param result of reconstruct().
+/// \return one mesh; empty without surfaces.
+JoinedMesh joined(const Result& result);
 
 /// @}
 

@@ -264,8 +264,6 @@ constexpr ResultField visitFields(const SmoothingReport*, const Visit& visit) {
   visit({"rms_displacement", "over the points of triangles", 1}, &Of::rms_displacement);
   visit({"volume_before", "signed volume enclosed", 3}, &Of::volume_before);
   visit({"volume_after", "signed volume enclosed", 3}, &Of::volume_after);
-  visit({"self_intersections", "pairs of triangles, on the smoothed points, or a sample"},
-        &Of::self_intersections);
   return {"Smoothing", "Distance of the smoothed surface from the given one."};
 }
 
@@ -276,12 +274,13 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   visit({"findings", "remarks and remedies; empty if all is well"}, &Of::findings);
   visit({"usable", "at most 1 % of the triangles intersect"}, &Of::isUsable);
   visit({"is_noisy", "the points look noisy"}, &Of::is_noisy);
-  visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
+  visit({"is_out_of_time", "the time limit ended optimisation or filling early"},
+        &Of::is_out_of_time);
   visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
   visit({"added_vertices", "number of vertices added in filled openings"}, &Of::added_vertices);
   visit({"smoothly_filled", "number of openings that have them"}, &Of::smoothly_filled);
   visit({"topology", "checked on the triangles"}, &Of::topology);
-  visit({"intersecting_triangles", "number of triangles that intersect others, after smoothing"},
+  visit({"intersecting_triangles", "number of triangles that intersect others"},
         &Of::intersecting_triangles);
   visit({"intersections_are_sampled",
          "more than 1 % of the triangles intersect, and the search ended: there may be more"},
@@ -295,7 +294,7 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
          "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,
          FieldKind::TriangleList},
         &Of::self_intersections);
-  visit({"measures", "of the mesh on the input or consolidated points"}, &Of::measures);
+  visit({"measures", "of the mesh"}, &Of::measures);
   visit({"diagnosis", "whether the cloud looks like a closed surface without handles"},
         &Of::diagnosis);
   visit({"outliers", "stray points that the mesh contains, ascending", 0, FieldKind::Inputs},
@@ -307,9 +306,12 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   visit({"faced_by", "what decided which side of the surface is outside"}, &Of::faced_by);
   visit({"embedding", "how it was reached"}, &Of::embedding);
   visit({"consolidation", "its report; none without consolidation"},
-        [](auto& s) { return s.consolidated.cols() > 0 ? &s.consolidation : nullptr; });
+        [](auto& s) { return s.consolidation ? &*s.consolidation : nullptr; });
   visit({"smoothing", "its report; none without smoothing"},
-        [](auto& s) { return s.smoothed.cols() > 0 ? &s.smoothing : nullptr; });
+        [](auto& s) { return s.smoothing ? &*s.smoothing : nullptr; });
+  visit({"vertices", "input, consolidated or smoothed points, then added vertices, as written", 1,
+         FieldKind::PerVertex},
+        &Of::points);
   visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
          FieldKind::PerTriangle},
         &Of::triangles);
@@ -318,14 +320,6 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
        "unit vectors: the embedding; none if the mesh has handles or tubes too long for one sphere",
        0, FieldKind::PerVertex},
       unlessEmpty(&Of::sphere));
-  visit({"smoothed", "the points after smoothing", 1, FieldKind::PerVertex},
-        unlessEmpty(&Of::smoothed));
-  visit(
-      {"consolidated", "the points after consolidation, before smoothing", 1, FieldKind::PerVertex},
-      unlessEmpty(&Of::consolidated));
-  visit({"filled", "the vertices with those that were added, which come last", 1,
-         FieldKind::PerVertex},
-        unlessEmpty(&Of::filled));
   visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
          FieldKind::PerVertex},
         unlessEmpty(&Of::vertex_residuals));

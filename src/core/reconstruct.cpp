@@ -26,6 +26,7 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -88,7 +89,6 @@ PartMesh meshAsPublished(const Positions& points, const Graph& graph, const Opti
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
   Triangles triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
-  clock.noteMesh();
   orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
   mesh.intersecting =
@@ -104,13 +104,31 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
                   bool is_flat, const CloudInfo& info, const Options& options, StageClock& clock) {
   if (is_flat && !plan.openings().isOpen())
     refuseFlat(options);
+  clock.keep(options.fill == FillMode::Smooth ? kTimeForFill : 0.0);
   PartMesh mesh = options.method == Method::Paper
                       ? meshAsPublished(points, graph.graph, options, clock)
                       : meshByAttempts(points, graph.graph, std::move(plan), options, clock);
+  clock.keep(0.0);
+  FinishedMesh finished;
+  finished.faced_by = orient(points, info, mesh.mesh, mesh.embedding);
+  const Triangles triangles = surfaceOf(mesh.mesh);
+  finished.points = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  finished.triangles = triangles;
+  finished.input_of_vertex.resize(columnCount(points));
+  std::iota(finished.input_of_vertex.begin(), finished.input_of_vertex.end(), Index{0});
+  finished.is_out_of_time = mesh.optimization.is_out_of_time;
+  finished.intersecting = std::move(mesh.intersecting);
+  finished.openings = mesh.openings.found(points, graph.graph, triangles);
+  if (mesh.has_certain_triangles_only)
+    for (Opening& opening : finished.openings)
+      opening.is_filled = !opening.triangles.empty();
+  if (options.fill == FillMode::Smooth) {
+    clock.begin("fill");
+    fillSmoothly(clock.limited(), finished);
+  }
   clock.begin("quality");
-  const FacedBy faced_by = orient(points, info, mesh.mesh, mesh.embedding);
-  Surface surface = judge(points, graph, std::move(mesh), options, clock.execution());
-  surface.faced_by = faced_by;
+  Surface surface = judge(points, graph, std::move(mesh), triangles, std::move(finished), options,
+                          clock.execution());
   return surface;
 }
 
@@ -183,7 +201,7 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
         "as a defect of the library");
-  toCloud(selection.parts()[part], surface, left_out.unmeshed);
+  toCloud(selection.pointsOf(part), selection.parts()[part], surface, left_out.unmeshed);
   return surface;
 }
 
@@ -232,23 +250,18 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
     left -= parts[part].size();
-    const auto leave_out = [&](const std::exception& error, std::size_t end) {
+    const auto leave_out = [&](const std::exception& error) {
       if (!first_error)
         first_error = std::current_exception();
-      const std::size_t before = failed.size();
-      for (std::size_t i = part; i < end; ++i)
-        failed.insert(failed.end(), parts[i].begin(), parts[i].end());
-      result.failures.push_back(failureOf(end - part, failed.size() - before, error.what()));
+      failed.insert(failed.end(), parts[part].begin(), parts[part].end());
+      result.failures.push_back(failureOf(1, parts[part].size(), error.what()));
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
     } catch (const InvalidInput& error) {
-      leave_out(error, part + 1);
-    } catch (const OutOfTime& error) {
-      leave_out(error, parts.size());
-      break;
+      leave_out(error);
     } catch (const ComputeError& error) {
-      leave_out(error, part + 1);
+      leave_out(error);
     }
   }
   if (result.surfaces.empty())
@@ -311,9 +324,6 @@ Result reconstruct(const Positions& points, const Options& given,
     internal::meshParts(selection, options, clock, result);
     return selection.parts().size();
   });
-  if (options.fill == FillMode::Smooth)
-    for (Surface& surface : result.surfaces)
-      internal::fillSmoothly(points, options, clock.execution(), surface);
   result.stages = clock.take();
   for (Surface& surface : result.surfaces) {
     surface.findings = internal::findingsOf(given, surface);
@@ -321,6 +331,38 @@ Result reconstruct(const Positions& points, const Options& given,
   }
   internal::summarize(parts, result);
   return result;
+}
+
+JoinedMesh joined(const Result& result) {
+  Eigen::Index vertices = 0;
+  Eigen::Index triangles = 0;
+  bool has_sphere = true;
+  for (const Surface& surface : result.surfaces) {
+    vertices += surface.points.cols();
+    triangles += surface.triangles.cols();
+    has_sphere = has_sphere && surface.sphere.cols() > 0;
+  }
+  JoinedMesh mesh;
+  mesh.points.resize(3, vertices);
+  mesh.triangles.resize(3, triangles);
+  mesh.sphere.resize(3, has_sphere ? vertices : 0);
+  vertices = 0;
+  triangles = 0;
+  for (const Surface& surface : result.surfaces) {
+    const Eigen::Index count = surface.points.cols();
+    mesh.points.middleCols(vertices, count) = surface.points;
+    if (has_sphere)
+      mesh.sphere.middleCols(vertices, count) = surface.sphere;
+    mesh.triangles.middleCols(triangles, surface.triangles.cols()) =
+        surface.triangles.array() + static_cast<Index>(vertices);
+    mesh.input_of_vertex.insert(mesh.input_of_vertex.end(), surface.input_of_vertex.begin(),
+                                surface.input_of_vertex.end());
+    vertices += count;
+    triangles += surface.triangles.cols();
+    mesh.is_added.resize(mesh.input_of_vertex.size() - surface.added_vertices, 0);
+    mesh.is_added.resize(mesh.input_of_vertex.size(), 1);
+  }
+  return mesh;
 }
 
 std::vector<Index> findOutliers(const Positions& points, const Options& options) {

@@ -2,6 +2,7 @@
 
 #include "boundary_loops.h"
 #include "depth_jumps.h"
+#include "judgement.h"
 #include "openings.h"
 #include "ordered_points.h"
 #include "orientation.h"
@@ -89,43 +90,54 @@ Indexed<Index> numberPieces(const Triangles& triangles, std::size_t nodes, const
   return piece_of;
 }
 
-/// Makes surfaces of a mesh that is open at jumps.
-class SurfaceMaker {
+/// A surface before it is judged, in the unit and the numbers of the input.
+struct ViewPiece {
+  std::vector<Index> inputs;
+  std::vector<Index> vertex_of_input;
+  FinishedMesh mesh;
+  Positions sphere;
+};
+
+/// Makes the surfaces of a mesh that is open at jumps.
+class PieceMaker {
 public:
   /// \param spacing of the nodes.
-  SurfaceMaker(const OrderedPoints& nodes, const Indexed<double>& spacing, const ViewMesh& view,
-               const OpenMesh& open, const Options& options)
+  PieceMaker(const OrderedPoints& nodes, const Indexed<double>& spacing, const ViewMesh& view,
+             const OpenMesh& open, const Options& options)
       : nodes_(nodes), spacing_(spacing), view_(view), open_(open), options_(options),
         piece_of_(numberPieces(surfaceOf(open), columnCount(nodes.points), options)),
         vertex_of_node_(columnCount(nodes.points), -1), number_of_(open.is_open.size(), -1) {
     if (!piece_of_.empty())
-      surfaces_.resize(
+      pieces_.resize(
           static_cast<std::size_t>(*std::max_element(piece_of_.begin(), piece_of_.end())) + 1);
   }
 
   /// \param inputs of the nodes, ascending.
-  std::vector<Surface> run(const Positions& points, const Positions& normals,
-                           const std::vector<Index>& inputs, const std::vector<Gap>& filled,
-                           LeftOut& left_out) {
+  std::vector<ViewPiece> run(const Positions& points, const Positions& normals,
+                             const std::vector<Index>& inputs, const std::vector<Gap>& filled,
+                             LeftOut& left_out) {
     sortPoints(inputs, left_out);
     makeTriangles();
     makeSphere();
     const std::vector<Indexed<double>> spacing = spacings();
-    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-      Surface& surface = surfaces_[s];
-      const Positions vertices = points(Eigen::all, surface.input_of_vertex);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      FinishedMesh& mesh = pieces_[i].mesh;
+      mesh.points = points(Eigen::all, mesh.input_of_vertex);
       if (normals.cols() > 0)
-        faceNormals(normals(Eigen::all, surface.input_of_vertex), vertices, surface);
-      judge(vertices, spacing[s], surface);
-      addFilled(vertices, spacing[s], filled, surface);
+        faceNormals(normals(Eigen::all, mesh.input_of_vertex), mesh);
+      for (std::vector<Index>& loop : boundaryLoops(mesh.triangles, columnCount(mesh.points)))
+        mesh.openings.push_back(openingOf(mesh.points, spacing[i], std::move(loop)));
     }
-    return std::move(surfaces_);
+    for (const Gap& gap : filled)
+      if (const Index i = piece_of_[gap.loop.front()]; i >= 0)
+        addFilled(gap, spacing[static_cast<std::size_t>(i)]);
+    return std::move(pieces_);
   }
 
 private:
-  Surface& surfaceAt(Index node) { return surfaces_[static_cast<std::size_t>(piece_of_[node])]; }
+  ViewPiece& pieceAt(Index node) { return pieces_[static_cast<std::size_t>(piece_of_[node])]; }
 
-  /// Gives each input point to its surface, or to those that are left out.
+  /// Gives each input point to its piece, or to those that are left out.
   void sortPoints(const std::vector<Index>& inputs, LeftOut& left_out) {
     Indexed<std::uint8_t> has_triangle(piece_of_.size(), 0);
     const Triangles surface = surfaceOf(open_);
@@ -144,11 +156,11 @@ private:
         reason(node).push_back(input);
         continue;
       }
-      Surface& of = surfaceAt(node);
+      ViewPiece& of = pieceAt(node);
       Index& vertex = vertex_of_node_[node];
       if (vertex < 0) {
-        vertex = static_cast<Index>(of.input_of_vertex.size());
-        of.input_of_vertex.push_back(input);
+        vertex = static_cast<Index>(of.mesh.input_of_vertex.size());
+        of.mesh.input_of_vertex.push_back(input);
       }
       of.inputs.push_back(input);
       of.vertex_of_input.push_back(vertex);
@@ -160,19 +172,19 @@ private:
   }
 
   /// Turns a surface as normals are on three quarters of its area.
-  static void faceNormals(const Positions& normals, const Positions& points, Surface& surface) {
+  static void faceNormals(const Positions& normals, FinishedMesh& mesh) {
     const double agreement = agreementWith(normals.array().isFinite().select(normals, 0.0).eval(),
-                                           points, surface.triangles);
+                                           mesh.points, mesh.triangles);
     if (std::abs(agreement) < 0.5)
       return;
-    surface.faced_by = FacedBy::Normals;
+    mesh.faced_by = FacedBy::Normals;
     if (agreement < 0.0)
-      flipOrientation(surface.triangles);
+      flipOrientation(mesh.triangles);
   }
 
   /// The triangles of the surfaces face the place; those around it outward.
   void makeTriangles() {
-    std::vector<std::vector<Index>> corners(surfaces_.size());
+    std::vector<std::vector<Index>> corners(pieces_.size());
     for (const Index t : trianglesOfSurface(open_)) {
       const auto nodes = open_.triangles.col(t);
       if (piece_of_[nodes[0]] < 0)
@@ -182,31 +194,31 @@ private:
       for (const int k : {0, 2, 1})
         all.push_back(vertex_of_node_[nodes[k]]);
     }
-    for (std::size_t s = 0; s < surfaces_.size(); ++s)
-      surfaces_[s].triangles = Eigen::Map<const Triangles>(
-          corners[s].data(), 3, static_cast<Eigen::Index>(corners[s].size() / 3));
     const bool is_closed = surfaceCount(open_) == open_.is_open.size();
-    for (Surface& surface : surfaces_) {
-      surface.faced_by = is_closed ? FacedBy::Outward : FacedBy::Viewpoint;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      FinishedMesh& mesh = pieces_[i].mesh;
+      mesh.triangles = Eigen::Map<const Triangles>(
+          corners[i].data(), 3, static_cast<Eigen::Index>(corners[i].size() / 3));
+      mesh.faced_by = is_closed ? FacedBy::Outward : FacedBy::Viewpoint;
       if (is_closed)
-        flipOrientation(surface.triangles);
+        flipOrientation(mesh.triangles);
     }
   }
 
   void makeSphere() {
-    for (Surface& surface : surfaces_)
-      surface.sphere.resize(3, static_cast<Eigen::Index>(surface.vertexCount()));
+    for (ViewPiece& piece : pieces_)
+      piece.sphere.resize(3, static_cast<Eigen::Index>(piece.mesh.input_of_vertex.size()));
     const Positions directions = directionsFrom(view_.place, nodes_.points);
     for (const Index node : indicesOf(piece_of_))
       if (piece_of_[node] >= 0)
-        surfaceAt(node).sphere.col(vertex_of_node_[node]) = directions.col(node);
+        pieceAt(node).sphere.col(vertex_of_node_[node]) = directions.col(node);
   }
 
-  /// At the vertices of each surface [unit of the input].
+  /// At the vertices of each piece [unit of the input].
   std::vector<Indexed<double>> spacings() const {
     std::vector<Indexed<double>> all;
-    for (const Surface& surface : surfaces_)
-      all.emplace_back(surface.vertexCount());
+    for (const ViewPiece& piece : pieces_)
+      all.emplace_back(piece.mesh.input_of_vertex.size());
     for (const Index node : indicesOf(piece_of_))
       if (piece_of_[node] >= 0)
         all[static_cast<std::size_t>(piece_of_[node])][vertex_of_node_[node]] =
@@ -214,38 +226,18 @@ private:
     return all;
   }
 
-  void judge(const Positions& points, const Indexed<double>& spacing, Surface& surface) const {
-    surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options_.threads);
-    if (!surface.topology.closed)
-      surface.boundary = boundaryLoops(surface.triangles, surface.vertexCount());
-    for (const std::vector<Index>& loop : surface.boundary)
-      surface.openings.push_back(openingOf(points, spacing, loop));
-    if (options_.details)
-      surface.diagnosis.triangle_marks.resize(columnCount(surface.triangles), 0);
-    surface.measures = measureMesh(points, surface.triangles, options_.threads);
-  }
-
-  void addFilled(const Positions& points, const Indexed<double>& spacing,
-                 const std::vector<Gap>& filled, Surface& surface) {
-    for (const Gap& gap : filled) {
-      const Index node_of_gap = gap.loop.front();
-      if (piece_of_[node_of_gap] < 0 || &surfaceAt(node_of_gap) != &surface)
-        continue;
-      std::vector<Index> loop;
-      for (const Index node : gap.loop)
-        loop.push_back(vertex_of_node_[node]);
-      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-      Opening opening = openingOf(points, spacing, std::move(loop));
-      opening.is_filled = true;
-      for (const Index t : gap.triangles) {
-        opening.triangles.push_back(number_of_[t]);
-        if (options_.details)
-          surface.diagnosis.triangle_marks[static_cast<std::size_t>(number_of_[t])] =
-              triangle_mark::filled_hole;
-      }
-      std::sort(opening.triangles.begin(), opening.triangles.end());
-      surface.openings.push_back(std::move(opening));
-    }
+  void addFilled(const Gap& gap, const Indexed<double>& spacing) {
+    FinishedMesh& mesh = pieceAt(gap.loop.front()).mesh;
+    std::vector<Index> loop;
+    for (const Index node : gap.loop)
+      loop.push_back(vertex_of_node_[node]);
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    Opening opening = openingOf(mesh.points, spacing, std::move(loop));
+    opening.is_filled = true;
+    for (const Index t : gap.triangles)
+      opening.triangles.push_back(number_of_[t]);
+    std::sort(opening.triangles.begin(), opening.triangles.end());
+    mesh.openings.push_back(std::move(opening));
   }
 
   const OrderedPoints& nodes_;
@@ -255,9 +247,29 @@ private:
   const Options& options_;
   Indexed<Index> piece_of_;
   Indexed<Index> vertex_of_node_;
-  Indexed<Index> number_of_;  ///< of each triangle in its surface; -1: in none
-  std::vector<Surface> surfaces_;
+  Indexed<Index> number_of_;  ///< of each triangle in its piece; -1: in none
+  std::vector<ViewPiece> pieces_;
 };
+
+/// Fills the openings of pieces, and judges them.
+std::vector<Surface> surfacesOf(std::vector<ViewPiece> pieces, const Options& options,
+                                StageClock& clock) {
+  if (options.fill == FillMode::Smooth) {
+    clock.begin("fill");
+    for (ViewPiece& piece : pieces)
+      fillSmoothly(clock.limited(), piece.mesh);
+  }
+  clock.begin("quality");
+  std::vector<Surface> surfaces;
+  for (ViewPiece& piece : pieces) {
+    Surface& surface = surfaces.emplace_back(judge(std::move(piece.mesh), {}, options));
+    if (surface.added_vertices == 0)
+      surface.sphere = std::move(piece.sphere);
+    surface.inputs = std::move(piece.inputs);
+    surface.vertex_of_input = std::move(piece.vertex_of_input);
+  }
+  return surfaces;
+}
 
 }  // namespace
 
@@ -288,9 +300,10 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
       inputs.size() < static_cast<std::size_t>(options.min_points))
     options.parts = PartsMode::All;
   clock.begin("optimization");
-  clock.noteMesh();
+  clock.keep(options.fill == FillMode::Smooth ? kTimeForFill : 0.0);
   flipInView(nodes.points, view->mesh, clock.execution(),
              [&] { return clock.remaining() == std::optional(0.0); });
+  clock.keep(0.0);
   clock.begin("openings");
   const bool is_grid = view->source == ViewSource::Above && isElevationGrid(nodes.points);
   const Positions flat = is_grid ? withoutHeights(nodes.points) : Positions();
@@ -305,23 +318,20 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
                          static_cast<std::size_t>(options.fill_holes),
                          std::ldexp(options.fill_holes_area, -2 * nodes.exponent)};
   const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, open);
-  clock.begin("quality");
-  std::vector<Surface> surfaces = SurfaceMaker(nodes, spacing, view->mesh, open, options)
+  std::vector<ViewPiece> pieces = PieceMaker(nodes, spacing, view->mesh, open, options)
                                       .run(points, info.normals, inputs, filled, left_out);
   std::size_t meshed = 0;
-  for (const Surface& surface : surfaces)
-    meshed += surface.inputs.size();
+  for (const ViewPiece& piece : pieces)
+    meshed += piece.inputs.size();
   // Less of a cloud is no view.
   const bool is_small = options.parts == PartsMode::Each && 10 * meshed < 9 * inputs.size();
-  if (!isGiven(options) && (surfaces.empty() || is_small)) {
-    clock.noteMesh(false);
+  if (!isGiven(options) && (pieces.empty() || is_small))
     return false;
-  }
-  if (surfaces.empty())
+  if (pieces.empty())
     throw InvalidInput(
         "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
         " points; give a lower min_points, or parts = all");
-  result.surfaces = std::move(surfaces);
+  result.surfaces = surfacesOf(std::move(pieces), options, clock);
   result.left_out = std::move(left_out);
   result.view = View{timesPowerOfTwo(view->mesh.place, nodes.exponent), view->source};
   return true;

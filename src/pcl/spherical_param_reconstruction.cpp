@@ -115,24 +115,17 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points) {
   return cloud;
 }
 
-void placeVertices(const spherical_param::Positions& vertices,
-                   const std::vector<spherical_param::Index>& vertex_of_used,
-                   const pcl::Indices& used_points, pcl::PointCloud<pcl::PointXYZ>& cloud) {
-  for (std::size_t i = 0; i < used_points.size(); ++i)
-    cloud[static_cast<std::size_t>(used_points[i])].getVector3fMap() =
-        vertices.col(vertex_of_used[i]).cast<float>();
-}
-
-void appendPolygons(const spherical_param::Triangles& triangles,
-                    const pcl::Indices& point_of_vertex, std::vector<pcl::Vertices>& polygons) {
+std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
+                                      const pcl::Indices& point_of_vertex) {
   const auto point = [&](spherical_param::Index vertex) {
     return point_of_vertex[static_cast<std::size_t>(vertex)];
   };
-  polygons.reserve(polygons.size() + static_cast<std::size_t>(triangles.cols()));
-  for (const auto triangle : triangles.colwise()) {
-    polygons.emplace_back();
-    polygons.back().vertices = {point(triangle[0]), point(triangle[1]), point(triangle[2])};
+  std::vector<pcl::Vertices> polygons(static_cast<std::size_t>(triangles.cols()));
+  for (std::size_t t = 0; t < polygons.size(); ++t) {
+    const auto triangle = triangles.col(static_cast<Eigen::Index>(t));
+    polygons[t].vertices = {point(triangle[0]), point(triangle[1]), point(triangle[2])};
   }
+  return polygons;
 }
 
 }  // namespace detail

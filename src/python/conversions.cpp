@@ -251,7 +251,12 @@ py::dict toDict(const Result& result) {
   py::list findings;
   for (const Finding& finding : result.findings)
     findings.append(Converter{false}.fieldsOf(finding));
+  const JoinedMesh mesh = joined(result);
   return py::dict("surfaces"_a = py::tuple(surfaces),
+                  "mesh"_a = py::dict("vertices"_a = toArray(mesh.points),
+                                      "triangles"_a = toArray(mesh.triangles),
+                                      "input_of_vertex"_a = toArray(mesh.input_of_vertex),
+                                      "is_added"_a = toArray(mesh.is_added)),
                   "view"_a = result.view ? Converter{false}.fieldsOf(*result.view)
                                          : py::object(py::none()),
                   "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,

@@ -128,9 +128,8 @@ void writeReportFile(const std::string& path, const Positions& points,
     cloud.stages = cloud.result.stages;
     const Surface& surface = cloud.result.surfaces.at(part);
     tools::OutputFile file(path);
-    tools::writeHtmlReport(file,
-                           {"spherical_param", command, reportOf(settings, input, cloud, surface),
-                            &cloud, &surface, settings.options.threads});
+    tools::writeHtmlReport(file, {"spherical_param", command,
+                                  reportOf(settings, input, cloud, surface), &cloud, &surface});
     file.commit();
   });
 }

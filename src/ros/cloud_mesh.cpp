@@ -152,39 +152,10 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
   }
 }
 
-/// Appends a surface. \param mesh has space for its records
-void append(const pcl::PCLPointCloud2& cloud, const Surface& result, Mesh& mesh) {
-  const Axes axes = axesOf(cloud);
-  const std::size_t first = mesh.vertices.size();
-  for (std::size_t i = 0; i < result.vertexCount(); ++i) {
-    std::uint8_t* record = mesh.cloud.data.data() + (first + i) * mesh.cloud.point_step;
-    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(result.input_of_vertex[i])),
-                mesh.cloud.point_step);
-    mesh.vertices.emplace_back();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (result.moved().cols() > 0)
-        setCoordinate(
-            record, *axes[axis],
-            result.moved()(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
-      mesh.vertices.back()[axis] = coordinate(record, *axes[axis]);
-    }
-  }
-  const auto vertex = [&](Index of_part) {
-    return static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(of_part);
-  };
-  for (const auto triangle : result.triangles.colwise())
-    mesh.triangles.push_back({vertex(triangle[0]), vertex(triangle[1]), vertex(triangle[2])});
-}
-
-std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
-                                     const std::vector<Surface>& parts) {
+std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud, const Result& result) {
+  const spherical_param::JoinedMesh joined = spherical_param::joined(result);
+  const std::size_t vertices = joined.input_of_vertex.size();
   auto mesh = std::make_shared<Mesh>();
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
-  for (const Surface& part : parts) {
-    vertices += part.vertexCount();
-    triangles += static_cast<std::size_t>(part.triangles.cols());
-  }
   pcl::PCLPointCloud2& kept = mesh->cloud;
   kept.header = cloud.header;
   kept.fields = cloud.fields;
@@ -195,10 +166,21 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
   kept.row_step = kept.width * kept.point_step;
   kept.is_dense = 1;
   kept.data.resize(vertices * kept.point_step);
-  mesh->vertices.reserve(vertices);
-  mesh->triangles.reserve(triangles);
-  for (const Surface& part : parts)
-    append(cloud, part, *mesh);
+  mesh->vertices.resize(vertices);
+  const Axes axes = axesOf(cloud);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    std::uint8_t* record = kept.data.data() + v * kept.point_step;
+    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(joined.input_of_vertex[v])),
+                kept.point_step);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      setCoordinate(record, *axes[axis],
+                    joined.points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(v)));
+      mesh->vertices[v][axis] = coordinate(record, *axes[axis]);
+    }
+  }
+  mesh->triangles.reserve(static_cast<std::size_t>(joined.triangles.cols()));
+  for (const auto triangle : joined.triangles.cast<std::uint32_t>().colwise())
+    mesh->triangles.push_back({triangle[0], triangle[1], triangle[2]});
   copyColors(cloud, *mesh);
   return mesh;
 }
@@ -228,7 +210,7 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   const Positions points = vectorsOf(cloud, axesOf(cloud));
   const Result result = spherical_param::reconstruct(points, options, {}, infoOf(cloud, points));
   describe(result, outcome);
-  outcome.mesh = makeMesh(cloud, result.surfaces);
+  outcome.mesh = makeMesh(cloud, result);
   outcome.status = Status::Done;
 }
 

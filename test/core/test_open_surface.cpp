@@ -44,10 +44,9 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
     const Surface result = surfaceOf(points, given(leftOpen(), "smoothing", smoothing));
     EXPECT_FALSE(result.isClosed());
     EXPECT_TRUE(result.is_noisy);
-    EXPECT_TRUE(smoothing == 0 || !result.self_intersections.empty());
-    EXPECT_EQ(result.smoothed.cols(), smoothing == 0 ? 0 : result.sphere.cols());
-    EXPECT_EQ(result.self_intersections,
-              findSelfIntersections(points(Eigen::all, result.input_of_vertex), result.triangles));
+    EXPECT_EQ(result.smoothing.has_value(), smoothing > 0);
+    EXPECT_EQ(result.points.cols(), result.sphere.cols());
+    EXPECT_EQ(result.self_intersections, findSelfIntersections(result.points, result.triangles));
   }
 }
 

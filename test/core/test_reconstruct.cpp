@@ -13,8 +13,7 @@ TEST(Reconstruct, CleanCloudsAreMeshedTrulyAndWithoutFaultsByBothMethods) {
       EXPECT_TRUE(result.self_intersections.empty());
       EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
       EXPECT_FALSE(result.is_noisy);
-      EXPECT_EQ(result.moved().cols(), 0);
-      EXPECT_EQ(result.smoothing.volume_before, 0.0);
+      EXPECT_FALSE(result.consolidation || result.smoothing);
       EXPECT_EQ(result.embedding.levels.empty(), options.method == Method::Paper);
       EXPECT_EQ(result.verdict, "A sound mesh.");
       EXPECT_FALSE(hasFault(result.findings));
@@ -144,7 +143,7 @@ TEST(Reconstruct, AskingForDetailsChangesNoBit) {
     const Surface seen = surfaceOf(points, watched(options));
     EXPECT_EQ(alone.triangles, seen.triangles);
     EXPECT_EQ(alone.sphere, seen.sphere);
-    EXPECT_EQ(alone.smoothed, seen.smoothed);
+    EXPECT_EQ(alone.points, seen.points);
     EXPECT_EQ(alone.self_intersections, seen.self_intersections);
     EXPECT_EQ(alone.verdict, seen.verdict);
     EXPECT_EQ(alone.embedding.residual, seen.embedding.residual);
@@ -216,6 +215,45 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
     EXPECT_FALSE(unhurried.is_out_of_time);
     EXPECT_EQ(unhurried.triangles, surfaceOf(points, options).triangles);
   }
+}
+
+TEST(Reconstruct, ATimeLimitDoesNotFailWhereZeroSucceeds) {
+  const Positions points = withNoise(ellipsoid(6000), 0.002, 5);
+  for (const double limit : {0.0, 1e-6, 0.01, 0.05})
+    EXPECT_TRUE(
+        isSphereOverAll(surfaceOf(points, given(sphere(), "time_limit", limit)).triangles, 6000))
+        << limit;
+}
+
+TEST(Reconstruct, TheJoinedMeshHasAllSurfacesAsTheyAre) {
+  const Positions band = pointsWhere(
+      spiralSphere(900), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });
+  const Positions points = horizontally(spiralSphere(400), movedTo(4.0, band));
+  const Result result =
+      reconstruct(points, given("surface", "closed", "parts", "each", "fill", "smooth"));
+  ASSERT_EQ(result.surfaces.size(), 2U);
+  const JoinedMesh mesh = joined(result);
+  EXPECT_EQ(mesh.sphere.cols(), 0);  // added vertices have no place there
+  Index vertex = 0;
+  Eigen::Index triangle = 0;
+  for (const Surface& surface : result.surfaces) {
+    const auto given = static_cast<Index>(surface.vertexCount() - surface.added_vertices);
+    for (Index v = 0; v < surface.points.cols(); ++v, ++vertex) {
+      const auto at = static_cast<std::size_t>(vertex);
+      EXPECT_EQ(mesh.points.col(vertex), surface.points.col(v));
+      EXPECT_EQ(mesh.is_added.at(at), v < given ? 0 : 1);
+      EXPECT_TRUE(v >= given || mesh.points.col(vertex) == points.col(mesh.input_of_vertex.at(at)));
+    }
+    for (Eigen::Index t = 0; t < surface.triangles.cols(); ++t, ++triangle)
+      EXPECT_EQ(mesh.points(Eigen::all, mesh.triangles.col(triangle)),
+                surface.points(Eigen::all, surface.triangles.col(t)));
+  }
+  EXPECT_EQ(mesh.points.cols(), vertex);
+  EXPECT_EQ(mesh.triangles.cols(), triangle);
+  EXPECT_TRUE(std::count(mesh.is_added.begin(), mesh.is_added.end(), 1) > 0);
+  EXPECT_EQ(joined(reconstruct(points, given("parts", "each", "surface", "closed"))).sphere.cols(),
+            points.cols());
+  EXPECT_EQ(joined({}).points.cols(), 0);
 }
 
 }  // namespace

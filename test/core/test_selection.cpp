@@ -41,7 +41,7 @@ void expectAlone(const Positions& points, const Surface& surface, const Options&
                                   given(options, "outliers", "none", "parts", "all", "threads", 1));
   EXPECT_EQ(surface.triangles, alone.triangles);
   EXPECT_EQ(surface.sphere, alone.sphere);
-  EXPECT_EQ(surface.consolidated, alone.consolidated);
+  EXPECT_EQ(surface.points, alone.points);
   EXPECT_EQ(surface.vertex_of_input, alone.vertex_of_input);
   for (std::size_t v = 0; v < alone.vertexCount(); ++v)
     EXPECT_EQ(surface.input_of_vertex.at(v),
@@ -164,21 +164,14 @@ TEST(Selection, PartsShareOneTimeLimit) {
                             [](const Surface& surface) { return surface.is_out_of_time; }),
               expected);
   }
-  // Without time for a mesh, parts are left out. The third takes it all.
-  Options options = given(each, "time_limit", 3.0);
-  bool has_waited = false;
-  options.progress = [&](const Progress& progress) {
-    if (progress.part == 2 && !std::exchange(has_waited, true))
-      std::this_thread::sleep_for(std::chrono::milliseconds(3200));
+  // All have a mesh, also those after one that takes all the time.
+  Options options = given(each, "time_limit", 0.05);
+  options.progress = [](const Progress& progress) {
+    if (progress.part == 2)
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
     return true;
   };
-  const Result result = reconstruct(points, options);
-  EXPECT_EQ(result.surfaces.size(), 2U);
-  EXPECT_EQ(result.left_out.other_parts.size(), 600U);
-  ASSERT_EQ(result.failures.size(), 1U);
-  EXPECT_EQ(result.failures[0].substr(0, 60),
-            "6 parts (600 points) cannot be meshed: the time limit of 3 s");
-  EXPECT_NE(result.verdict.find("6 parts cannot be meshed"), std::string::npos) << result.verdict;
+  EXPECT_EQ(reconstruct(points, options).surfaces.size(), 8U);
 }
 
 }  // namespace

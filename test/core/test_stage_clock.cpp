@@ -57,42 +57,27 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   EXPECT_FALSE(half.hasTimeAgain());
 }
 
-TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
-  for (const double limit : {0.0, 1e-9}) {
-    Execution user;
-    user.time_limit = limit;
-    StageClock clock(user);
-    clock.begin("graph");  // small clouds have their mesh
-    std::this_thread::sleep_for(std::chrono::milliseconds(160));
-    const auto ends = [&](const char* stage) {
-      try {
-        clock.begin(stage);
-        return false;
-      } catch (const OutOfTime&) {
-        return true;
-      }
-    };
-    EXPECT_EQ(ends("embedding"), limit > 0.0);
-    EXPECT_NO_THROW(clock.take());
-    StageClock with_mesh(user);
-    with_mesh.begin("triangulation");
-    with_mesh.noteMesh();
-    std::this_thread::sleep_for(std::chrono::milliseconds(160));
-    EXPECT_NO_THROW(with_mesh.begin("quality"));
-  }
+TEST(StageClock, TimeIsKeptForLaterStages) {
+  Execution user;
+  user.time_limit = 1e6;
+  StageClock clock(user);
+  clock.keep(0.2);
+  EXPECT_NEAR(*clock.limited().time_limit, 0.8e6, 1e3);
+  clock.keep(0.0);
+  EXPECT_NEAR(*clock.limited().time_limit, 1e6, 1e3);
 }
 
 TEST(StageClock, StagesComeInOrder) {
   const Positions sphere = spiralSphere(200);
   const Positions points = horizontally(sphere, movedTo(4.0, sphere), 2.0 * spiralSphere(4));
-  const Names of_part{"openings",     "embedding", "triangulation",
-                      "optimization", "smoothing", "quality"};
+  const Names of_part{"openings",  "embedding", "triangulation", "optimization",
+                      "smoothing", "cleaning",  "fill",          "quality"};
   Names expected{"neighbors", "graph", "outliers", "neighbors", "graph", "parts"};
   for (int part = 0; part < 2; ++part) {
     expected.insert(expected.end(), {"neighbors", "graph"});
     expected.insert(expected.end(), of_part.begin(), of_part.end());
   }
-  Options options = given("outliers", "auto", "parts", "each", "smoothing", 1);
+  Options options = given("outliers", "auto", "parts", "each", "smoothing", 1, "fill", "smooth");
   Names names;
   options.progress = [&](const Progress& progress) {
     if (names.empty() || names.back() != progress.stage)
@@ -118,7 +103,7 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     return true;
   };
   surfaceOf(spiralSphere(40000), options);
-  ASSERT_EQ(fractions.size(), 10U);
+  ASSERT_EQ(fractions.size(), 11U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(areFractions(of_stage)) << stage;
     EXPECT_EQ(of_stage.front(), 0.0) << stage;

@@ -156,7 +156,7 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   const Positions torus = torusCloud(60, 24);
   const Surface smooth = surfaceOf(torus, watched(given("smoothing", 3)));
   EXPECT_EQ(smooth.topology.genus, 1);
-  EXPECT_EQ(smooth.smoothed.cols(), torus.cols());
+  EXPECT_NE(smooth.points, torus);
   EXPECT_TRUE(smooth.vertex_residuals.empty());
   EXPECT_TRUE(smooth.history.frames.empty());
   const Options consolidated = given("consolidation", "auto", "outliers", "auto");
@@ -168,16 +168,10 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   EXPECT_EQ(surfaceOf(torus, quick(paper())).topology.genus, 0);
 }
 
-TEST(SurfaceTopology, WithinATimeLimitThereIsASurfaceOrNone) {
+TEST(SurfaceTopology, WithinATimeLimitThereIsASurface) {
   const Positions torus = torusCloud(30, 12);
   for (const double seconds : {0.0, 1e-3, 3e-3, 1e-2}) {
-    Surface hasty;
-    try {
-      hasty = surfaceOf(torus, given("time_limit", seconds));
-    } catch (const ComputeError&) {  // there was no mesh in time
-      EXPECT_GT(seconds, 0.0);
-      continue;
-    }
+    const Surface hasty = surfaceOf(torus, given("time_limit", seconds));
     EXPECT_TRUE(hasty.topology.isSurface() && hasty.topology.closed);
     EXPECT_EQ(hasty.topology.vertices, static_cast<std::size_t>(torus.cols()));
     EXPECT_EQ(hasty.genus(), static_cast<std::size_t>(*hasty.topology.genus));

@@ -127,9 +127,9 @@ void checkSurface(const Positions& points, const Options& options, const Surface
     const std::string fault = stress::faultOfTopology(result);
     if (!fault.empty())
       fuzz::finding(fault);
-    require(result.consolidated.allFinite() &&
-                result.consolidated.cols() == static_cast<Eigen::Index>(result.vertexCount()),
-            "the consolidated points are as many finite ones as there are vertices");
+    require(result.points.allFinite() &&
+                result.points.cols() == static_cast<Eigen::Index>(result.vertexCount()),
+            "the points are as many finite ones as there are vertices");
     require(result.vertex_of_input.size() == result.inputs.size(), "each point has a vertex");
     for (std::size_t v = 0; v < result.vertexCount(); ++v)
       require(result.vertexOf(result.input_of_vertex[v]) == static_cast<Index>(v),
@@ -177,9 +177,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (options.paper.max_iterations > 3000 || options.embedding.starts > 20 ||
       options.smoothing > 300)
     watch.cancelAt(2000);
-  const std::array<std::string, 11> stages{
-      "neighbors", "graph",         "outliers",     "parts",     "consolidation", "openings",
-      "embedding", "triangulation", "optimization", "smoothing", "quality"};
+  const std::array<std::string, 13> stages{
+      "neighbors", "graph",     "outliers",      "parts",        "consolidation",
+      "openings",  "embedding", "triangulation", "optimization", "smoothing",
+      "cleaning",  "fill",      "quality"};
   if (watch.listens())
     options.progress = [&](const Progress& progress) {
       const bool goes_on = watch(progress);

@@ -181,7 +181,6 @@ inline void expectNothingLeft(const Reconstruction& reconstruction, const pcl::P
   EXPECT_TRUE(reconstruction.getVertexIndices().empty());
   EXPECT_EQ(reconstruction.getIgnoredPointCount(), 0U);
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
-  EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
 }
 
 /// Expects that all overloads fail with a message that has these words, and leave nothing stale.

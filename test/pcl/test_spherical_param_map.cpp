@@ -77,7 +77,7 @@ TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) 
   }
   reconstruction.setSmoothing(3);
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
-  EXPECT_EQ(points, reconstruction.getResult().surface().smoothed);
+  EXPECT_EQ(points, reconstruction.getResult().surface().points);
 }
 
 TEST_F(SphericalParamRemesh, MeshesWithHandlesAreRefusedAndCutOnesAreNot) {

@@ -33,7 +33,7 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
     const Surface expected =
         spherical_param::reconstruct(positionsOf(*hard.cloud, hard.used), options).surface();
     EXPECT_EQ(surface.sphere, expected.sphere);
-    EXPECT_EQ(surface.smoothed, expected.smoothed);
+    EXPECT_EQ(surface.points, expected.points);
     EXPECT_EQ(reconstruction.getSelfIntersections(), expected.self_intersections);
     EXPECT_EQ(reconstruction.getResult().verdict, expected.verdict);
   }
@@ -265,44 +265,61 @@ TEST_F(SphericalParamReconstruction, SmoothFillsAppendPointsToThePolygonMesh) {
   EXPECT_TRUE(isSphere(mesh.polygons, points.size()));
   for (std::size_t i = cloud->size(); i < points.size(); ++i)
     EXPECT_EQ(points[i].getVector3fMap(),
-              surface.filled.col(static_cast<Eigen::Index>(i)).cast<float>());
+              surface.points.col(static_cast<Eigen::Index>(i)).cast<float>());
   // Polygons alone are those of the input.
   EXPECT_TRUE(isSphere(meshed(reconstruction), cloud->size()));
 }
 
-TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt) {
+TEST_F(SphericalParamReconstruction, PolygonMeshHasConsolidatedAndSmoothedPoints) {
+  const HardCase hard;
+  for (const bool consolidates : {true, false}) {
+    Reconstruction reconstruction = reconstructionOf(hard.cloud);
+    reconstruction.setIndices(share(hard.indices));
+    if (consolidates)
+      reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
+    else
+      reconstruction.setSmoothing(2);
+    pcl::PolygonMesh mesh;
+    reconstruction.reconstruct(mesh);
+    const Surface& surface = reconstruction.getResult().surface();
+    Cloud expected = *hard.cloud;
+    for (std::size_t v = 0; v < surface.vertexCount(); ++v) {
+      Eigen::Vector3f point = surface.points.col(static_cast<Eigen::Index>(v)).cast<float>();
+      expected[static_cast<std::size_t>(reconstruction.getVertexIndices()[v])].getVector3fMap() =
+          point;
+    }
+    const Cloud points = cloudOf<PointXYZ>(mesh.cloud);
+    ASSERT_EQ(points.size(), expected.size());
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3f point = points[i].getVector3fMap();
+      EXPECT_TRUE(point.array().isNaN().any() || point == expected[i].getVector3fMap()) << i;
+      moved += point != (*hard.cloud)[i].getVector3fMap() ? 1 : 0;
+    }
+    EXPECT_GT(moved, surface.vertexCount() / 2);
+    EXPECT_TRUE(trianglesOf(mesh.polygons) == trianglesOf(meshed(reconstruction)));
+  }
+}
+
+TEST_F(SphericalParamReconstruction, SphereFitsTheCloudAndOutlivesIt) {
   const HardCase hard;
   Reconstruction reconstruction;
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
   reconstruction.setInputCloud(hard.cloud);
   reconstruction.setIndices(share(hard.indices));
   meshed(reconstruction);
-  EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
-  reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
-  meshed(reconstruction);
-  const auto consolidated = reconstruction.getMovedPoints();
-  const Surface& of_consolidated = reconstruction.getResult().surface();
-  for (std::size_t i = 0; i < hard.used.size(); ++i)
-    EXPECT_EQ((*consolidated)[static_cast<std::size_t>(hard.used[i])].getVector3fMap(),
-              of_consolidated.consolidated.col(of_consolidated.vertex_of_input[i]).cast<float>());
-  reconstruction.setConsolidation(spherical_param::ConsolidationMode::None);
-  reconstruction.setSmoothing(2);
-  meshed(reconstruction);
   const Surface& result = reconstruction.getResult().surface();
   reconstruction.setInputCloud(makeEllipsoid(5));
-  for (const auto& [cloud, expected] :
-       {std::pair(reconstruction.getSphereCoordinates(), result.sphere),
-        {reconstruction.getMovedPoints(), result.smoothed}}) {
-    ASSERT_EQ(cloud->size(), 400U);
-    EXPECT_FALSE(cloud->is_dense);
-    for (std::size_t v = 0; v < reconstruction.getVertexIndices().size(); ++v)
-      EXPECT_EQ(
-          (*cloud)[static_cast<std::size_t>(reconstruction.getVertexIndices()[v])].getVector3fMap(),
-          expected.col(static_cast<Eigen::Index>(v)).cast<float>());
-    EXPECT_EQ((*cloud)[20].getVector3fMap(), (*cloud)[30].getVector3fMap());
-    for (const std::size_t i : {0U, 7U, 8U, 350U, 399U})
-      EXPECT_TRUE((*cloud)[i].getVector3fMap().array().isNaN().all()) << i;
-  }
+  const auto cloud = reconstruction.getSphereCoordinates();
+  ASSERT_EQ(cloud->size(), 400U);
+  EXPECT_FALSE(cloud->is_dense);
+  for (std::size_t v = 0; v < reconstruction.getVertexIndices().size(); ++v)
+    EXPECT_EQ(
+        (*cloud)[static_cast<std::size_t>(reconstruction.getVertexIndices()[v])].getVector3fMap(),
+        result.sphere.col(static_cast<Eigen::Index>(v)).cast<float>());
+  EXPECT_EQ((*cloud)[20].getVector3fMap(), (*cloud)[30].getVector3fMap());
+  for (const std::size_t i : {0U, 7U, 8U, 350U, 399U})
+    EXPECT_TRUE((*cloud)[i].getVector3fMap().array().isNaN().all()) << i;
 }
 
 /// A setter, what it sets, and whether the getter returns that.

@@ -49,7 +49,7 @@ class Maps(unittest.TestCase):
         self.assertEqual(again.directions.tobytes(), self.map.directions.tobytes())
         self.assertFalse(np.shares_memory(again.vertices, mesh.vertices))
         smooth = sp.reconstruct(self.points, smoothing=3)
-        np.testing.assert_array_equal(sp.sphere_map(smooth, sweeps=0).vertices, smooth.smoothed)
+        np.testing.assert_array_equal(sp.sphere_map(smooth, sweeps=0).vertices, smooth.vertices)
 
     def test_surfaces_with_openings_stay_open(self):
         points = shapes.ellipsoid(1500)

@@ -18,7 +18,7 @@ OTHERS = {"columns": ("x,y,z",), "details": (1, "yes", None), "progress": (1, "p
 class Mesh(shapes.InFolder):
     def test_the_mesh_and_its_numbers_are_those_of_the_arrays(self):
         points = shapes.ellipsoid(600)
-        mesh = sp.reconstruct(points, smoothing=5)
+        mesh = sp.reconstruct(points)
         shapes.check_closed(self, 600, mesh.triangles)
         np.testing.assert_array_equal(mesh.vertices, points)
         np.testing.assert_array_equal(mesh.input_of_vertex, np.arange(600))
@@ -31,14 +31,15 @@ class Mesh(shapes.InFolder):
         volume = shapes.volume(points, mesh.triangles)
         self.assertAlmostEqual(mesh.measures.volume, volume, delta=1e-11)
         np.testing.assert_array_equal(mesh.measures.box_min, points.min(axis=0))
-        steps = np.linalg.norm(mesh.smoothed - points, axis=1)
-        self.assertAlmostEqual(steps.max(), mesh.smoothing.max_displacement, delta=1e-12)
+        smooth = sp.reconstruct(points, smoothing=5)
+        steps = np.linalg.norm(smooth.vertices - points, axis=1)
+        self.assertAlmostEqual(steps.max(), smooth.smoothing.max_displacement, delta=1e-12)
         self.assertGreater(steps.max(), 0.0)
         self.assertIn("300 vertices, 596 triangles", repr(sp.reconstruct(points[:300])))
         again = pickle.loads(pickle.dumps(mesh))
         np.testing.assert_array_equal(again.triangles, mesh.triangles)
         self.assertEqual(again.topology, mesh.topology)
-        for array in (mesh.vertices, mesh.triangles, mesh.sphere, mesh.smoothed,
+        for array in (mesh.vertices, mesh.triangles, mesh.sphere,
                       mesh.vertex_of_input, mesh.input_of_vertex):  # fmt: skip
             self.assertTrue(array.flags.owndata and array.flags.writeable)
             array[:] = 0
@@ -65,10 +66,11 @@ class Mesh(shapes.InFolder):
         points += np.random.default_rng(3).normal(0.0, 0.01, points.shape)
         mesh = sp.reconstruct(points, consolidation="auto")
         self.assertEqual(len(points), len(mesh.vertices) + mesh.consolidation.merged)
-        np.testing.assert_array_equal(mesh.vertices, points[mesh.input_of_vertex])
-        steps = np.linalg.norm(mesh.consolidated[mesh.vertex_of_input] - points, axis=1)
+        steps = np.linalg.norm(mesh.vertices[mesh.vertex_of_input] - points, axis=1)
         self.assertAlmostEqual(steps.max(), mesh.consolidation.max_displacement, delta=1e-12)
-        np.testing.assert_array_equal(mesh._export_points(), mesh.consolidated)
+        mesh.write(self.folder / "mesh.ply")
+        written = sp.reconstruct(self.folder / "mesh.ply", topology="sphere").vertices
+        np.testing.assert_array_equal(written, mesh.vertices.astype(np.float32))
 
     def test_smooth_fills_add_vertices_at_the_end(self):
         points = shapes.directions(2000)
@@ -77,19 +79,21 @@ class Mesh(shapes.InFolder):
         self.assertGreater(mesh.added_vertices, 0)
         self.assertEqual(len(mesh.vertices), len(points) + mesh.added_vertices)
         np.testing.assert_array_equal(mesh.vertices[: len(points)], points)
-        np.testing.assert_array_equal(mesh.filled, mesh.vertices)
         self.assertEqual(mesh.triangles.max(), len(mesh.vertices) - 1)
         marks = np.arange(len(mesh.vertices)) >= len(points)
-        both = sp.reconstruct(points[:100], parts="each")
-        all_marks = type(both)([mesh, *both])._export_added()
-        np.testing.assert_array_equal(all_marks, np.concatenate([marks, np.zeros(100)]))
+        ball = shapes.directions(300) + [4, 0, 0]
+        both = sp.reconstruct(np.concatenate([ball, points]), surface="closed", fill="smooth", parts="each")
+        np.testing.assert_array_equal(both._export_added(), np.concatenate([marks, np.zeros(300)]))
+        np.testing.assert_array_equal(both.vertices, np.concatenate([part.vertices for part in both]))
+        corners = [part.vertices[part.triangles] for part in both]
+        np.testing.assert_array_equal(both.vertices[both.triangles], np.concatenate(corners))
         record = np.dtype([("floats", "<f4", 6), ("added", "u1")])  # with normals
         path = self.folder / "mesh.ply"
         mesh.write(path)
         header, _, body = path.read_bytes().partition(b"end_header\n")
         self.assertIn(b"\nproperty uchar added\n", header)
         np.testing.assert_array_equal(np.frombuffer(body, record, len(marks))["added"], marks)
-        both.write(path)
+        both[1].write(path)
         self.assertNotIn(b"added", path.read_bytes())
         with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
             sp.sphere_map(mesh)
@@ -175,8 +179,7 @@ class Options(unittest.TestCase):
         self.assertEqual((usual.embedding.stop_reason, usual.embedding.converged), ("unfinished", False))
         short = run(method="paper", max_iterations=np.int64(3), damping=np.float32(0.5))
         self.assertEqual((short.embedding.iterations, len(short.embedding.residuals)), (3, 4))
-        for absent in (usual.smoothed, usual.smoothing, usual.consolidated, usual.consolidation,
-                       usual.history, usual.vertex_residuals,
+        for absent in (usual.smoothing, usual.consolidation, usual.history, usual.vertex_residuals,
                        usual.diagnosis.triangle_marks):  # fmt: skip
             self.assertIsNone(absent)
 

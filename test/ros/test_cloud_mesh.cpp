@@ -49,9 +49,7 @@ template <typename Scalar>
 void expectCoresMesh(const Outcome& outcome, const Positions& points, const Settings& settings) {
   const auto whole = spherical_param::reconstruct(points, settings.options);
   const spherical_param::Surface& result = whole.surface();
-  Positions vertices = points(Eigen::all, result.input_of_vertex);
-  if (result.moved().cols() > 0)
-    vertices = result.moved().cast<Scalar>().template cast<double>();
+  const Positions vertices = result.points.cast<Scalar>().template cast<double>();
   const Mesh& mesh = *outcome.mesh;
   ASSERT_EQ(mesh.vertices.size(), static_cast<std::size_t>(vertices.cols()));
   ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(result.triangles.cols()));

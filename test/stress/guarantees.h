@@ -176,8 +176,11 @@ inline std::string faultOf(const Positions& cloud, const Options& options, const
     return "the embedding is not of unit vectors, or not of a sphere";
   if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
     return "the volume or the area is not finite";
-  if (options.smoothing > 0 && (result.smoothed.cols() != count || !result.smoothed.allFinite()))
-    return "the smoothed points are not as many finite ones";
+  if (result.points.cols() != count || !result.points.allFinite())
+    return "the points are not as many finite ones as vertices";
+  if (options.smoothing == 0 && result.added_vertices == 0 &&
+      result.points != cloud(Eigen::all, result.input_of_vertex))
+    return "the points are not those of the input";
   return "";
 }
 
@@ -228,7 +231,7 @@ inline std::string bytesOf(const Result& result) {
   for (const Surface& surface : result.surfaces) {
     add(surface.triangles);
     add(surface.sphere);
-    add(surface.smoothed);
+    add(surface.points);
     add(surface.inputs);
     add(surface.vertex_of_input);
     add(surface.input_of_vertex);
@@ -236,7 +239,7 @@ inline std::string bytesOf(const Result& result) {
     add(surface.self_intersections);
     add(surface.embedding.residuals);
     add(std::array{surface.measures.volume, surface.measures.area, surface.embedding.residual,
-                   surface.smoothing.volume_after});
+                   surface.smoothing ? surface.smoothing->volume_after : 0.0});
   }
   add(result.left_out.outliers);
   add(result.left_out.other_parts);

@@ -5,6 +5,7 @@
 #include "common/text.h"
 #include "spherical_param/mesh_measures.h"
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -27,17 +28,14 @@ CloudInfo infoOf(const PointData& data) {
 }
 
 /// The points with the normals of their meshes.
-std::shared_ptr<const PointData> withNormals(PointData data, const CloudReconstruction& cloud) {
+std::shared_ptr<const PointData> withNormals(PointData data, const JoinedMesh& mesh) {
   data.normals.assign(data.points.size(), Normal{});
-  for (const Surface& surface : cloud.result.surfaces) {
-    const Positions normals =
-        areaWeightedNormals(vertexPositions(cloud, surface), surface.triangles);
-    const auto given = static_cast<Eigen::Index>(surface.vertexCount() - surface.added_vertices);
-    for (Eigen::Index v = 0; v < given; ++v) {
-      const auto point =
-          static_cast<std::size_t>(surface.input_of_vertex[static_cast<std::size_t>(v)]);
-      const Eigen::Vector3d normal = normals.col(v).stableNormalized();
-      data.normals[point] = toFloat({normal.x(), normal.y(), normal.z()});
+  const Positions normals = areaWeightedNormals(mesh.points, mesh.triangles);
+  for (std::size_t v = 0; v < mesh.is_added.size(); ++v) {
+    if (mesh.is_added[v] == 0) {
+      const Eigen::Vector3d normal = normals.col(static_cast<Eigen::Index>(v)).stableNormalized();
+      data.normals[static_cast<std::size_t>(mesh.input_of_vertex[v])] =
+          toFloat({normal.x(), normal.y(), normal.z()});
     }
   }
   return std::make_shared<PointData>(std::move(data));
@@ -80,7 +78,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
     console.end();
   }
   if (cloud.data->has_null_normals) {
-    cloud.data = withNormals(*cloud.data, cloud);
+    cloud.data = withNormals(*cloud.data, joined(cloud.result));
   }
   cloud.stages.insert(cloud.stages.end(), cloud.result.stages.begin(), cloud.result.stages.end());
 }
@@ -113,7 +111,7 @@ std::string leftOut(const CloudReconstruction& cloud) {
   std::size_t merged = 0;
   for (const Surface& surface : cloud.result.surfaces) {
     duplicates += surface.duplicates();
-    merged += surface.consolidation.merged;
+    merged += surface.consolidation ? surface.consolidation->merged : 0;
   }
   std::string text;
   const auto add = [&text](const std::string& more) {
@@ -142,23 +140,9 @@ std::string meshSize(std::size_t vertices, Eigen::Index triangles) {
          counted(static_cast<std::size_t>(triangles), "triangle");
 }
 
-Positions vertexPositions(const CloudReconstruction& cloud, const Surface& surface) {
-  if (surface.moved().cols() > 0) {
-    return surface.moved();
-  }
-  Positions positions(3, static_cast<Eigen::Index>(surface.vertexCount()));
-  for (std::size_t v = 0; v < surface.vertexCount(); ++v) {
-    positions.col(static_cast<Eigen::Index>(v)) =
-        cloud.data->position(static_cast<std::size_t>(surface.input_of_vertex[v]));
-  }
-  return positions;
-}
-
 MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface) {
   MeshView mesh(*cloud.data, surface.input_of_vertex, surface.triangles);
-  if (surface.moved().cols() > 0) {
-    mesh.moveTo(surface.moved());
-  }
+  mesh.moveTo(surface.points);
   if (surface.added_vertices > 0) {
     std::vector<std::uint8_t> added(surface.vertexCount() - surface.added_vertices, 0);
     added.resize(surface.vertexCount(), 1);
@@ -167,54 +151,18 @@ MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface) {
   return mesh;
 }
 
-JoinedMesh::JoinedMesh(const CloudReconstruction& cloud, bool is_sphere)
-    : data_(cloud.data), is_sphere_(is_sphere) {
-  Eigen::Index triangles = 0;
-  std::size_t vertices = 0;
-  bool has_moved = is_sphere;
-  bool has_added = false;
-  for (const Surface& surface : cloud.result.surfaces) {
-    triangles += surface.triangles.cols();
-    vertices += surface.vertexCount();
-    has_moved = has_moved || surface.moved().cols() > 0;
-    has_added = has_added || surface.added_vertices > 0;
-  }
-  triangles_.resize(3, triangles);
-  places_.resize(3, has_moved ? static_cast<Eigen::Index>(vertices) : 0);
-  triangles = 0;
-  for (const Surface& surface : cloud.result.surfaces) {
-    const auto first = static_cast<Eigen::Index>(point_of_vertex_.size());
-    triangles_.middleCols(triangles, surface.triangles.cols()) =
-        surface.triangles.array() + static_cast<Index>(first);
-    triangles += surface.triangles.cols();
-    if (has_moved) {
-      places_.middleCols(first, static_cast<Eigen::Index>(surface.vertexCount())) =
-          is_sphere ? surface.sphere : vertexPositions(cloud, surface);
-    }
-    point_of_vertex_.insert(point_of_vertex_.end(), surface.input_of_vertex.begin(),
-                            surface.input_of_vertex.end());
-    if (has_added) {
-      added_.resize(point_of_vertex_.size() - surface.added_vertices, 0);
-      added_.resize(point_of_vertex_.size(), 1);
-    }
-  }
-}
-
-MeshView JoinedMesh::view() const {
-  MeshView mesh(*data_, point_of_vertex_, triangles_);
-  if (places_.cols() > 0) {
-    mesh.moveTo(places_);
-  }
-  mesh.markAdded(added_);
-  if (is_sphere_) {
-    mesh.leaveOutNormals();
+MeshView meshOf(const CloudReconstruction& cloud, const JoinedMesh& joined) {
+  MeshView mesh(*cloud.data, joined.input_of_vertex, joined.triangles);
+  mesh.moveTo(joined.points);
+  if (std::count(joined.is_added.begin(), joined.is_added.end(), 1) > 0) {
+    mesh.markAdded(joined.is_added);
   }
   return mesh;
 }
 
-MeshView sphereOf(const CloudReconstruction& cloud, const Surface& surface,
-                  const Positions& sphere) {
-  MeshView view(*cloud.data, surface.input_of_vertex, surface.triangles);
+MeshView sphereOf(const CloudReconstruction& cloud, const std::vector<Index>& input_of_vertex,
+                  const Triangles& triangles, const Positions& sphere) {
+  MeshView view(*cloud.data, input_of_vertex, triangles);
   view.leaveOutNormals();
   view.moveTo(sphere);
   return view;

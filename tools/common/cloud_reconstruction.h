@@ -42,34 +42,14 @@ Summary summaryOf(const std::string& path, const CloudReconstruction& cloud);
 /// The size of a mesh in words.
 std::string meshSize(std::size_t vertices, Eigen::Index triangles);
 
-/// The positions of the vertices of a surface: consolidated and smoothed, if that was asked for
-/// [unit of the file].
-Positions vertexPositions(const CloudReconstruction& cloud, const Surface& surface);
-
-/// The mesh of a surface to write, without points that are not vertices. Cloud and
-/// surface must outlive it.
+/// The mesh of a surface, or of all, to write, without points that are not vertices. Both must
+/// outlive it.
 MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface);
+MeshView meshOf(const CloudReconstruction& cloud, const JoinedMesh& joined);
 
-/// All surfaces of a cloud as one mesh.
-class JoinedMesh {
-public:
-  /// \param is_sphere the vertices are on the sphere that all surfaces have.
-  explicit JoinedMesh(const CloudReconstruction& cloud, bool is_sphere = false);
-  /// This must outlive the view.
-  MeshView view() const;
-
-private:
-  std::shared_ptr<const PointData> data_;
-  std::vector<Index> point_of_vertex_;
-  Triangles triangles_;
-  bool is_sphere_;
-  Positions places_;                 ///< empty if no points were moved
-  std::vector<std::uint8_t> added_;  ///< marks of vertices; empty if none was added
-};
-
-/// The vertices on a sphere, 3 x v: that of the surface, or another that outlives the view. They
+/// The vertices of a mesh on a sphere, 3 x v: its own, or another. All must outlive the view. They
 /// keep their colours, but not the normals of the input, which mean nothing there.
-MeshView sphereOf(const CloudReconstruction& cloud, const Surface& surface,
-                  const Positions& sphere);
+MeshView sphereOf(const CloudReconstruction& cloud, const std::vector<Index>& input_of_vertex,
+                  const Triangles& triangles, const Positions& sphere);
 
 }  // namespace spherical_param::tools

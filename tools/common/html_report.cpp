@@ -214,7 +214,7 @@ void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh
 }
 
 /// Adds the unfolding, and returns its frames.
-Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays& arrays) {
+Json addHistory(const Surface& result, Arrays& arrays) {
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
@@ -233,7 +233,7 @@ Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays&
     ordered.push_back(places[static_cast<std::size_t>(i)]);
     vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
-  const Positions positions = vertexPositions(cloud, result)(Eigen::all, vertices);
+  const Positions positions = result.points(Eigen::all, vertices);
   arrays.addPoints("history_positions", positions, boxOf(positions));
   arrays.addTriangles("history_triangles", triangulateSphere(end(Eigen::all, ordered)));
   const auto width = static_cast<Eigen::Index>(count);
@@ -320,10 +320,10 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
       triangles += surface.triangles.cols();
       edge_lengths +=
           surface.measures.mean_edge_length * static_cast<double>(surface.vertexCount());
-      has_moved = has_moved || surface.moved().cols() > 0;
+      has_moved = has_moved || surface.consolidation || surface.smoothing;
     }
   }
-  const ReportMesh mesh = reportMesh(cloud, surfaces, input.threads);
+  const ReportMesh mesh = reportMesh(cloud, surfaces);
   Arrays arrays;
   addMesh(mesh, arrays);
   addCloud(cloud, has_moved, mesh, arrays);
@@ -349,8 +349,7 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   }
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = sphereTurn(mesh);
-  json["frames"] =
-      surfaces.size() == 1 ? addHistory(cloud, *surfaces.front(), arrays) : Json::array();
+  json["frames"] = surfaces.size() == 1 ? addHistory(*surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));

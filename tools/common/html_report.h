@@ -32,7 +32,6 @@ struct HtmlReportInput {
   Json report;                                 ///< of -json
   const CloudReconstruction* cloud = nullptr;  ///< made after keepForHtmlReport()
   const Surface* surface = nullptr;            ///< one of `cloud`, to be shown; null: all
-  int threads = 0;
 };
 
 /// The page without its data: HTML with one line `<!--DATA-->`, in place of which the program and

@@ -100,7 +100,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   SphereMapOptions options = settings.map;
   options.progress = console.progress();
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
-    mapped.mesh = cutHandles(vertexPositions(mapped.cloud, surface), surface.triangles);
+    mapped.mesh = cutHandles(surface.points, surface.triangles);
     mapped.map =
         computeSphereMap(mapped.mesh.points, mapped.mesh.triangles, surface.sphere, options);
   });

@@ -1,7 +1,6 @@
 #include "common/report_mesh.h"
 
 #include "space_filling_curve.h"
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
@@ -69,24 +68,6 @@ Eigen::ArrayXd residualExponents(const Surface& result) {
     if (std::isfinite(result.vertex_residuals[v]))
       residuals[static_cast<Eigen::Index>(v)] = std::max(result.vertex_residuals[v], least);
   return residuals.log10();
-}
-
-/// Marks of the triangles where they are shown.
-std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
-  std::vector<std::uint8_t> marks = result.diagnosis.triangle_marks;
-  marks.resize(static_cast<std::size_t>(result.triangles.cols()), 0);
-  if (result.smoothed.cols() == 0) {
-    return marks;
-  }
-  // The self-intersections of the result are those of the points of the input.
-  std::vector<std::array<Index, 2>> pairs;
-  if (result.smoothing.self_intersections > 0) {
-    Execution execution;
-    execution.threads = threads;
-    pairs = findSelfIntersections(result.moved(), result.triangles, execution);
-  }
-  markSelfIntersections(pairs, marks);
-  return marks;
 }
 
 /// A mark of vertices, beside the bits of triangle_mark.
@@ -157,20 +138,20 @@ void sortTriangles(ReportMesh& mesh) {
   }
 }
 
-ReportMesh meshOfSurface(const CloudReconstruction& cloud, const Surface& result, int threads,
-                         std::size_t max_triangles) {
+ReportMesh meshOfSurface(const Surface& result, std::size_t max_triangles) {
   const bool has_sphere = result.sphere.cols() > 0;
-  const Positions positions = vertexPositions(cloud, result);
   ReportMesh mesh;
-  const std::vector<Index> vertices = internal::mortonOrder(has_sphere ? result.sphere : positions);
-  mesh.positions = positions(Eigen::all, vertices);
+  const std::vector<Index> vertices =
+      internal::mortonOrder(has_sphere ? result.sphere : result.points);
+  mesh.positions = result.points(Eigen::all, vertices);
   std::vector<Index> place_of(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     place_of[at(vertices[i])] = static_cast<Index>(i);
     mesh.inputs.push_back(result.input_of_vertex[at(vertices[i])]);
   }
   mesh.triangles = result.triangles.unaryExpr([&place_of](Index v) { return place_of[at(v)]; });
-  mesh.marks = marksOf(result, threads);
+  mesh.marks = result.diagnosis.triangle_marks;
+  mesh.marks.resize(at(mesh.triangles.cols()), 0);
   if (has_sphere) {
     mesh.sphere = result.sphere(Eigen::all, vertices);
     mesh.residual = residualExponents(result)(vertices);
@@ -191,7 +172,7 @@ ReportMesh meshOfSurface(const CloudReconstruction& cloud, const Surface& result
 }  // namespace
 
 ReportMesh reportMesh(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
-                      int threads, std::size_t max_triangles) {
+                      std::size_t max_triangles) {
   std::size_t whole = 0;    // triangles of surfaces without a sphere
   std::size_t reduced = 0;  // of the others
   for (const Surface* surface : surfaces) {
@@ -205,7 +186,7 @@ ReportMesh reportMesh(const CloudReconstruction& cloud, const std::vector<const 
   for (const Surface* surface : surfaces) {
     const std::size_t fraction =
         at(surface->triangles.cols()) * room / std::max<std::size_t>(reduced, 1);
-    meshes.push_back(meshOfSurface(cloud, *surface, threads, fraction));
+    meshes.push_back(meshOfSurface(*surface, fraction));
     has_sphere = has_sphere && surface->sphere.cols() > 0;
     vertices += static_cast<Index>(meshes.back().positions.cols());
     all.marks.insert(all.marks.end(), meshes.back().marks.begin(), meshes.back().marks.end());

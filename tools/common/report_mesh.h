@@ -32,6 +32,6 @@ inline constexpr std::size_t kMaxReportTriangles = 1000000;
 /// sphere is shown as a whole. Several surfaces have a sphere in common if they are seen from one
 /// place.
 ReportMesh reportMesh(const CloudReconstruction& cloud, const std::vector<const Surface*>& surfaces,
-                      int threads, std::size_t max_triangles = kMaxReportTriangles);
+                      std::size_t max_triangles = kMaxReportTriangles);
 
 }  // namespace spherical_param::tools

@@ -42,15 +42,6 @@ struct MappedMesh : spherical_param::CutMesh {
 /** \brief What becomes of a mesh with handles, which has no map to one sphere. */
 enum class HandlesOnSphere { Cut, Refused };
 
-/** \brief The vertices of the last mesh, consolidated and smoothed, 3 x v. */
-template <typename PointInT>
-spherical_param::Positions
-verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
-  if (reconstruction.getResult().surface().moved().cols() > 0)
-    return reconstruction.getResult().surface().moved();
-  return positionsOf(*reconstruction.getInputCloud(), reconstruction.getVertexIndices());
-}
-
 /** \brief Meshes a cloud and maps the mesh. \return false after a failure */
 template <typename PointInT>
 bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSphere handles,
@@ -66,7 +57,7 @@ bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSp
     const spherical_param::Surface& result = reconstruction.getResult().surface();
     if (handles == HandlesOnSphere::Refused)
       requireSphere(result);
-    MappedMesh made{spherical_param::cutHandles(verticesOf(reconstruction), result.triangles), {}};
+    MappedMesh made{spherical_param::cutHandles(result.points, result.triangles), {}};
     made.map =
         spherical_param::computeSphereMap(made.points, made.triangles, result.sphere, guarded);
     mesh = std::move(made);

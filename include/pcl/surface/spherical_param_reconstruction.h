@@ -114,8 +114,8 @@ public:
   /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
    * before meshing: for noisy and for merged scans.
    * \param[in] mode default ConsolidationMode::None
-   * \note Polygons then index the first of merged points; getMovedPoints() has the new positions,
-   * and Surface::consolidation of getResult() the figures. The search object is used for
+   * \note Polygons then index the first of merged points; a pcl::PolygonMesh has it where it was
+   * moved, Surface::consolidation of getResult() the figures. The search object is used for
    * setOutliers() and setParts() alone. */
   void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get the value of setConsolidation(). \return it */
@@ -217,8 +217,8 @@ public:
   /** \brief Set the strength of smoothing.
    * \param[in] steps 0 (default) to 10000; 0: none. About as strong as this number of steps of the
    * paper's section 4.2.
-   * \note The mesh keeps the points of the input; getMovedPoints() has the smoothed points for the
-   * same polygons. */
+   * \note A pcl::PolygonMesh has the smoothed points; Surface::smoothing of getResult() says how
+   * far they moved. */
   void setSmoothing(int steps) { options_.smoothing = steps; }
   int getSmoothing() const { return options_.smoothing; }  ///< As set. \return it
 
@@ -230,9 +230,9 @@ public:
 
   /** \brief Set the time after which the work ends with the best mesh so far, over all parts.
    * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit; 0: the first mesh, however long it
-   * takes. Without a mesh in time, reconstruct() fails, or leaves out the parts that have none;
-   * Surface::is_out_of_time of getResult() says whether the limit ended the work on a mesh.
-   * \note Set it if a scan must not delay the next one. The mesh then depends on the machine. */
+   * takes. The first mesh of each part is always finished; Surface::is_out_of_time of getResult()
+   * says whether the limit ended the work on a mesh. \note Set it if a scan must not delay the next
+   * one. The mesh then depends on the machine. */
   void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
   /** \brief Get the value of setTimeLimit(). \return it */
   std::optional<double> getTimeLimit() const { return options_.time_limit; }
@@ -259,12 +259,15 @@ public:
   const spherical_param::Options& getOptions() const { return options_; }  ///< As set. \return it
 
   /** \brief Mesh the points given in setInputCloud() and setIndices().
-   * \param[out] output header and cloud (with every field) are those of the whole input cloud,
-   * polygons are the triangles; both are cleared first. Empty after a failure. */
+   * \param[out] output header and cloud (with every field) are those of the whole input cloud, but
+   * vertices are where consolidation and smoothing moved them, and added ones come last; polygons
+   * are the triangles. It is cleared first, and empty after a failure. */
   void reconstruct(pcl::PolygonMesh& output) override;
 
   /** \brief Mesh the points given in setInputCloud() and setIndices().
-   * \param[out] polygons the triangles, indices into the input cloud; cleared first. */
+   * \param[out] polygons the triangles, indices into the input cloud; cleared first.
+   * \note Surface::points of getResult() are the vertices in double precision, where they were
+   * moved. */
   void reconstruct(std::vector<pcl::Vertices>& polygons) override;
 
   /** \brief Mesh the points given in setInputCloud() and setIndices() for getResult() only: its
@@ -309,17 +312,9 @@ public:
    * \return a new cloud of the size of the input */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 
-  /** \brief Get the points after setConsolidation() and setSmoothing(), one for each point of the
-   * input cloud, so that the polygons fit. Duplicates and merged points have the place of their
-   * vertex; points that were not meshed are NaN. Empty without both and after a failure.
-   * \note Surface::moved() of getResult() has them by vertex in double precision;
-   * Surface::consolidation and Surface::smoothing say how far they moved.
-   * \return a new cloud of the size of the input, or an empty one */
-  pcl::PointCloud<pcl::PointXYZ>::Ptr getMovedPoints() const;
-
   /** \brief Get the pairs of triangles of the mesh that intersect, {lower, higher}, ascending. They
    * are indices of triangles of the part's surface in getResult(), with one part those of the
-   * polygons. Exact on the points of the input.
+   * polygons. Exact on Surface::points.
    * \note Noisy points often leave some; see setSmoothing().
    * \param[in] part below getPartCount()
    * \return the pairs; empty for a clean scan */
@@ -373,10 +368,8 @@ private:
     return part == 0 && result_.surfaces.empty() ? none : result_.surfaces.at(part);
   }
 
-  /** \brief Makes a cloud of the size of the input from the places of vertices, a member of
-   * spherical_param::Surface. */
-  template <typename Places>
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(Places places) const;
+  /** \brief The indices into the input cloud of the vertices of all surfaces. */
+  pcl::Indices vertexIndices() const;
 
   /** \brief Fills the results. */
   void meshPoints(FillMode fill);

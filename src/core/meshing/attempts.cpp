@@ -268,8 +268,7 @@ private:
   // --- What all of them need
 
   double flippedEnergy(const Triangles& triangles) {
-    Execution execution = clock_.execution();
-    execution.time_limit = clock_.remaining();
+    const Execution execution = clock_.limited();
     clock_.begin("optimization");
     return energyOf(flipMesh(points_, triangles, graph_,
                              {plan_.openings().places(), false, options_.seed}, execution));
@@ -313,8 +312,7 @@ void finishMesh(const Positions& points, const Graph& graph, Triangles triangles
                 const Options& options, StageClock& clock, PartMesh& mesh) {
   const OpenPlaces* const places = mesh.openings.places();
   if (options.method == Method::Default) {
-    Execution execution = clock.execution();
-    execution.time_limit = clock.remaining();
+    Execution execution = clock.limited();
     // The other half is for the smoothed points, which get an optimisation of their own.
     const bool is_smoothed = options.smoothing > 0;
     if (is_smoothed && execution.time_limit)
@@ -329,8 +327,7 @@ void finishMesh(const Positions& points, const Graph& graph, Triangles triangles
     mesh.optimization = optimized.report;
   }
   if (options.smoothing > 0) {
-    Execution execution = clock.execution();
-    execution.time_limit = clock.remaining();
+    const Execution execution = clock.limited();
     clock.begin("smoothing");
     mesh.smoothed = smoothMesh(points, triangles, graph, places,
                                SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
@@ -338,7 +335,7 @@ void finishMesh(const Positions& points, const Graph& graph, Triangles triangles
     triangles = mesh.smoothed.triangles;
     mesh.optimization.is_out_of_time |= mesh.smoothed.is_out_of_time;
   }
-  clock.begin("quality");
+  clock.begin("cleaning");
   if (places != nullptr) {
     mesh.mesh = openMesh(points, triangles, *places);
   } else {

@@ -1,8 +1,6 @@
 #pragma once
 
 #include "progress.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/option_table.h"
 #include "spherical_param/result.h"
 #include "time_left.h"
 
@@ -15,28 +13,19 @@
 
 namespace spherical_param::internal {
 
-/// The time limit ended the work before there was a mesh.
-class OutOfTime : public ComputeError {
-public:
-  explicit OutOfTime(double limit)
-      : ComputeError("reconstruct: the time limit of " + textOf(limit) +
-                     " s ended the work before there was a mesh; allow more time") {}
-};
+/// Of the time that is left for a mesh: filling takes far less than the optimisation.
+inline constexpr double kTimeForFill = 0.2;
 
-/// Times the stages, reports their beginning and end, and shares the time limit between parts. At
-/// the limit it ends the work before a mesh with OutOfTime, unless the limit is 0.
+/// Times the stages, reports their beginning and end, and shares the time limit between parts and
+/// stages. No stage before the first mesh of a part has a limit.
 class StageClock {
 public:
   /// \param user how the caller wants the work done; must outlive the clock.
   explicit StageClock(const Execution& user) : user_(user), left_(user.time_limit) {
     execution_.threads = user.threads;
-    if (user.progress || isLimited())
+    if (user.progress)
       execution_.progress = [this](const Progress& progress) {
-        // So that small clouds have a mesh whatever the limit [s].
-        constexpr double grace = 0.15;
-        if (isLimited() && !has_mesh_ && left_(-grace) == 0.0)
-          throw OutOfTime(*user_.time_limit);
-        return !user_.progress || user_.progress({stage_, progress.fraction, part_, parts_});
+        return user_.progress({stage_, progress.fraction, part_, parts_});
       };
   }
   StageClock(const StageClock& other) = delete;  // execution() points here
@@ -44,6 +33,12 @@ public:
 
   /// Execution for the stages: without a time limit; progress is reported for the current stage.
   const Execution& execution() const { return execution_; }
+  /// The same, with the time that remains as its limit.
+  Execution limited() const {
+    Execution execution = execution_;
+    execution.time_limit = remaining();
+    return execution;
+  }
 
   /// Begins a stage; the one before ends.
   void begin(const char* stage) {
@@ -53,16 +48,19 @@ public:
     report(0.0);
   }
 
-  /// Notes whether the part has a mesh: then the limit no longer ends its work with OutOfTime.
-  void noteMesh(bool has_mesh = true) { has_mesh_ = has_mesh; }
+  /// Keeps a fraction of the time that is left for the stages after the next call.
+  void keep(double fraction) {
+    kept_ = 0.0;
+    kept_ = fraction * remaining().value_or(0.0);
+  }
 
   /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
   /// points_fraction of all points.
   void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
     part_ = part;
     parts_ = parts;
-    has_mesh_ = false;
     fraction_ = points_fraction;
+    kept_ = 0.0;
     std::optional<double> limit = left_();
     if (limit)
       *limit *= fraction;
@@ -72,10 +70,10 @@ public:
 
   /// The part's share of the points of all parts.
   double share() const { return fraction_; }
-  /// Time left for the part [s], minus a reserve for the check of the mesh: half of the time until
-  /// the embedding, more than it takes.
+  /// Time left for the part [s], minus what is kept, and a reserve for the check of the mesh: half
+  /// of the time until the embedding, more than it takes.
   std::optional<double> remaining() const {
-    double kept = 0.0;
+    double kept = kept_;
     for (const StageTime& time : times_)
       if (time.name == "neighbors" || time.name == "graph")
         kept += fraction_ * time.seconds / 2.0;
@@ -91,15 +89,12 @@ public:
 
   /// Ends the last stage. \return the time of each stage
   std::vector<StageTime> take() {
-    noteMesh();
     end();
     return std::move(times_);
   }
 
 private:
   using Clock = std::chrono::steady_clock;
-
-  bool isLimited() const { return user_.time_limit && *user_.time_limit > 0.0; }
 
   void end() {
     if (stage_ == nullptr)
@@ -124,7 +119,7 @@ private:
   std::optional<TimeLeft> part_left_;
   double fraction_ = 1.0;
   const char* stage_ = nullptr;
-  bool has_mesh_ = false;  ///< of the part
+  double kept_ = 0.0;  ///< [s]
   Clock::time_point begin_;
   Clock::time_point part_begin_ = Clock::now();
   std::size_t part_ = 0;

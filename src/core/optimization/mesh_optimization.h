@@ -88,12 +88,10 @@ Triangles flipMesh(const Positions& points, const Triangles& triangles, const Gr
 
 /// A mesh and smoothed positions of its points.
 struct SmoothedMesh {
-  Triangles triangles;                     ///< optimised on the smoothed points
-  Positions points;                        ///< 3 x n
-  SmoothingReport report;                  ///< with the self-intersections on the smoothed points
-  std::size_t intersecting_triangles = 0;  ///< of those self-intersections
-  bool is_sample = false;                  ///< more triangles may intersect
-  bool is_out_of_time = false;             ///< the time limit ended the optimisation early
+  Triangles triangles;          ///< optimised on the smoothed points
+  Positions points;             ///< 3 x n
+  SmoothingReport report;       ///< displacements, volumes
+  bool is_out_of_time = false;  ///< the time limit ended the optimisation early
 };
 
 /// Smooths the points and, if wanted, optimises the mesh on the smoothed points if triangles

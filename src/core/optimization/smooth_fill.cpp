@@ -5,7 +5,9 @@
 #include "pi.h"
 #include "progress.h"
 #include "rows.h"
+#include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
+#include "time_left.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
@@ -214,17 +216,16 @@ void fair(const FillPatch& patch, bool is_plate, Places& x) {
 /// Makes the patches of a mesh.
 class SmoothFiller {
 public:
-  SmoothFiller(const Positions& points, const Triangles& triangles,
-               const std::vector<std::vector<Index>>& openings, int threads)
-      : points_(points), triangles_(triangles),
-        corners_(triangles, columnCount(points), threadCount(threads, columnCount(points))),
-        opening_of_(columnCount(triangles), -1), spacing_(columnCount(points), 0.0) {
-    for (std::size_t i = 0; i < openings.size(); ++i)
-      for (const Index t : openings[i])
+  SmoothFiller(FinishedMesh& mesh, int threads)
+      : mesh_(mesh), points_(mesh.points), triangles_(mesh.triangles),
+        corners_(triangles_, columnCount(points_), threadCount(threads, columnCount(points_))),
+        opening_of_(columnCount(triangles_), -1), spacing_(columnCount(points_), 0.0) {
+    for (std::size_t i = 0; i < mesh.openings.size(); ++i)
+      for (const Index t : mesh.openings[i].triangles)
         opening_of_[t] = static_cast<Index>(i);
     measureSpacing();
-    for (const std::vector<Index>& opening : openings)
-      for (const Index first : opening)
+    for (const Opening& opening : mesh.openings)
+      for (const Index first : opening.triangles)
         if (opening_of_[first] >= 0)
           addPatch(first);
   }
@@ -253,13 +254,15 @@ public:
                    patches_.end());
   }
 
-  /// The mesh with patches that bend as far as they do not intersect more than the given ones.
-  SmoothFill withoutIntersections(const Execution& execution) {
-    const auto given = findSelfIntersections(points_, triangles_, execution);
+  /// Gives the mesh the patches, bent as far as they do not intersect more than the given ones.
+  void fill(const Execution& execution) {
+    const auto& given = mesh_.intersecting.pairs;
     for (;;) {
       Indexed<Index> patch_of;
-      SmoothFill fill = assembled(patch_of);
-      fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, execution);
+      FinishedMesh filled = assembled(patch_of);
+      if (filled.added_vertices == 0)
+        return;
+      filled.intersecting.pairs = findSelfIntersections(filled.points, filled.triangles, execution);
       // For each patch, the pairs now without those before.
       Indexed<Index> more(patches_.size(), 0);
       const auto count = [&](const auto& pairs, Index by) {
@@ -268,7 +271,7 @@ public:
             if (patch_of[t] >= 0)
               more[patch_of[t]] += by;
       };
-      count(fill.self_intersections, 1);
+      count(filled.intersecting.pairs, 1);
       count(given, -1);
       bool has_changed = false;
       for (const Index i : indicesOf(more))
@@ -278,8 +281,10 @@ public:
         }
       const bool is_given = std::all_of(patches_.begin(), patches_.end(),
                                         [](const auto& patch) { return patch.bend == AsGiven; });
-      if (!has_changed && (is_given || fill.self_intersections.size() <= given.size()))
-        return fill;
+      if (!has_changed && (is_given || filled.intersecting.pairs.size() <= given.size())) {
+        mesh_ = std::move(filled);
+        return;
+      }
       for (FillPatch& patch : patches_)
         patch.bend = has_changed ? patch.bend : AsGiven;
     }
@@ -360,13 +365,12 @@ private:
   }
 
   /// The mesh with the patches as they bend now. \param patch_of of each triangle; -1: none
-  SmoothFill assembled(Indexed<Index>& patch_of) const {
+  FinishedMesh assembled(Indexed<Index>& patch_of) const {
     using Triangle = Eigen::Matrix<Index, 3, 1>;
-    SmoothFill fill;
+    FinishedMesh filled = mesh_;
     std::vector<Eigen::Vector3d> added;
     std::vector<Triangle> more;
-    fill.points = points_;
-    fill.triangles = triangles_;
+    Index last = -1;  // opening with added vertices
     patch_of.assign(columnCount(triangles_), -1);
     for (Index i = 0; i < patches_.count(); ++i) {
       const FillPatch& patch = patches_[i];
@@ -380,10 +384,11 @@ private:
         for (Index& v : triangle)
           v = v < patch.given.count() ? patch.given[v] : first + v - patch.given.count();
         if (t < patch.at.size()) {
-          fill.triangles.col(patch.at[t]) = triangle;
+          filled.triangles.col(patch.at[t]) = triangle;
         } else {
+          filled.openings[static_cast<std::size_t>(patch.opening)].triangles.push_back(
+              patch_of.count());
           more.push_back(triangle);
-          fill.opening_of.push_back(patch.opening);
           patch_of.push_back(i);
         }
       }
@@ -393,23 +398,25 @@ private:
         const auto distance = [&](Index other) {
           return (points_.col(other) - added.back()).squaredNorm();
         };
-        fill.nearest.push_back(*std::min_element(
+        const Index nearest = *std::min_element(
             patch.given.begin(), patch.given.begin() + patch.own,
-            [&](Index one, Index other) { return distance(one) < distance(other); }));
+            [&](Index one, Index other) { return distance(one) < distance(other); });
+        filled.input_of_vertex.push_back(mesh_.input_of_vertex[static_cast<std::size_t>(nearest)]);
       }
-      if (fill.filled.empty() || fill.filled.back() != patch.opening)
-        fill.filled.push_back(patch.opening);
+      filled.smoothly_filled += std::exchange(last, patch.opening) == patch.opening ? 0 : 1;
     }
+    filled.added_vertices = added.size();
     const auto append = [](const auto& columns, auto& matrix) {
       const Eigen::Index before = matrix.cols();
       matrix.conservativeResize(3, before + static_cast<Eigen::Index>(columns.size()));
       std::copy(columns.begin(), columns.end(), matrix.colwise().begin() + before);
     };
-    append(added, fill.points);
-    append(more, fill.triangles);
-    return fill;
+    append(added, filled.points);
+    append(more, filled.triangles);
+    return filled;
   }
 
+  FinishedMesh& mesh_;
   const Positions& points_;
   const Triangles& triangles_;
   CornerTable corners_;
@@ -421,59 +428,28 @@ private:
 
 }  // namespace
 
-SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
-                        const std::vector<std::vector<Index>>& openings,
-                        const Execution& execution) {
-  SmoothFiller filler(points, triangles, openings, execution.threads);
-  filler.bend(reportOf(execution, "filling"));
-  return filler.withoutIntersections(execution);
-}
-
-void fillSmoothly(const Positions& cloud, const Options& options, const Execution& execution,
-                  Surface& surface) {
-  std::vector<std::vector<Index>> openings;
-  for (const Opening& opening : surface.openings)
-    openings.push_back(opening.is_filled ? opening.triangles : std::vector<Index>());
-  if (surface.intersections_are_sampled ||
-      std::all_of(openings.begin(), openings.end(), [](const auto& of) { return of.empty(); }))
+void fillSmoothly(const Execution& execution, FinishedMesh& mesh) {
+  const bool has_filled = std::any_of(mesh.openings.begin(), mesh.openings.end(),
+                                      [](const auto& of) { return !of.triangles.empty(); });
+  if (!has_filled || mesh.intersecting.is_sample)
     return;
-  const Positions given = surface.moved().cols() > 0
-                              ? surface.moved()
-                              : Positions(cloud(Eigen::all, surface.input_of_vertex));
-  SmoothFill fill = fillSmoothly(given, surface.triangles, openings, execution);
-  surface.added_vertices = fill.nearest.size();
-  if (fill.nearest.empty())
-    return;
-  surface.smoothly_filled = fill.filled.size();
-  const Eigen::Index before = surface.triangles.cols();
-  surface.triangles = std::move(fill.triangles);
-  std::vector<std::uint8_t>& marks = surface.diagnosis.triangle_marks;
-  for (std::size_t i = 0; i < fill.opening_of.size(); ++i) {
-    Opening& opening = surface.openings[static_cast<std::size_t>(fill.opening_of[i])];
-    opening.triangles.push_back(static_cast<Index>(before) + static_cast<Index>(i));
-    if (options.details)
-      marks.push_back(opening.isCertain() ? triangle_mark::filled_hole : std::uint8_t{0});
+  const TimeLeft left(execution.time_limit);
+  Execution limited = execution;
+  bool is_late = false;
+  if (execution.time_limit)
+    limited.progress = [&](const Progress& progress) {
+      is_late = left() == 0.0;
+      return !is_late && (!execution.progress || execution.progress(progress));
+    };
+  try {
+    SmoothFiller filler(mesh, execution.threads);
+    filler.bend(reportOf(limited, "fill"));
+    filler.fill(limited);
+  } catch (const Cancelled&) {
+    if (!is_late)
+      throw;
+    mesh.is_out_of_time = true;
   }
-  for (const Index v : fill.nearest)
-    surface.input_of_vertex.push_back(surface.input_of_vertex[static_cast<std::size_t>(v)]);
-  surface.filled = std::move(fill.points);
-  for (Positions* moved : {&surface.consolidated, &surface.smoothed})
-    if (moved->cols() > 0) {
-      moved->conservativeResize(3, surface.filled.cols());
-      moved->rightCols(surface.filled.cols() - given.cols()) =
-          surface.filled.rightCols(surface.filled.cols() - given.cols());
-    }
-  // Added vertices have no place on the sphere.
-  surface.sphere.resize(3, 0);
-  surface.history = {};
-  surface.vertex_residuals.clear();
-  surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options.threads);
-  surface.measures = measureMesh(surface.filled, surface.triangles, options.threads);
-  surface.self_intersections = std::move(fill.self_intersections);
-  surface.intersecting_triangles = countTriangles(surface.self_intersections);
-  if (surface.smoothed.cols() > 0)
-    surface.smoothing.self_intersections = surface.self_intersections.size();
-  markSelfIntersections(surface.self_intersections, marks);
 }
 
 }  // namespace spherical_param::internal

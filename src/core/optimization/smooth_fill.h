@@ -1,44 +1,34 @@
 #pragma once
 
-#include "spherical_param/options.h"
+#include "intersecting_pairs.h"
 #include "spherical_param/result.h"
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// A mesh with vertices added over its filled openings.
-struct SmoothFill {
-  Positions points;            ///< 3 x (n + a): those given, then those added [unit of the input]
-  std::vector<Index> nearest;  ///< a entries: the given vertex nearest to each added one
-  /// 3 x m': the first m take the places of those given.
+/// A mesh as it is written, in the unit and with the vertices of the stage that made it.
+struct FinishedMesh {
+  Positions points;  ///< 3 x v, consolidated and smoothed if that was asked for
   Triangles triangles;
-  std::vector<Index>
-      opening_of;             ///< m' - m entries: the opening that each further triangle is over
-  std::vector<Index> filled;  ///< openings with added vertices, ascending
-  std::vector<std::array<Index, 2>> self_intersections;  ///< as findSelfIntersections()
+  std::vector<Opening> openings;  ///< with the triangles over filled ones
+  IntersectingPairs intersecting;
+  std::vector<Index> input_of_vertex;  ///< v entries
+  std::size_t added_vertices = 0;      ///< they come last
+  std::size_t smoothly_filled = 0;     ///< openings that have them
+  FacedBy faced_by = FacedBy::Outward;
+  bool is_out_of_time = false;
 };
 
 /// Refines the triangles over filled openings to the density around them, and bends them so that
 /// they go on as the surface around does (Liepa 2003: Filling holes in meshes). Where they would
-/// intersect more than before, they bend less, or stay as they are. The given points stay.
+/// intersect more than before, they bend less, or stay as they are. The given points stay. So do
+/// triangles over an opening that form no disc, and a mesh with a sample of its intersections.
 ///
-/// \param points 3 x n; \param triangles 3 x m, manifold, oriented.
-/// \param openings for each its triangles, in one opening only. Those that form no disc stay.
-/// \param execution threads, progress and cancellation.
-/// \return the mesh, of the same topology; the same, bit by bit, for any number of threads.
-SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
-                        const std::vector<std::vector<Index>>& openings,
-                        const Execution& execution);
-
-/// The same for a finished surface, whose figures follow. One with more intersections than were
-/// listed stays.
-///
-/// \param cloud 3 x n, the input; \param options threads and details.
-/// \param execution threads, progress and cancellation.
-/// \param surface in the unit and the numbers of the input, changed in place.
-void fillSmoothly(const Positions& cloud, const Options& options, const Execution& execution,
-                  Surface& surface);
+/// \param execution threads, progress, time limit: at its end the openings stay flat.
+/// \param mesh      manifold, oriented. It keeps its topology and the numbers of its triangles;
+///                  further ones come last. The same, bit by bit, for any number of threads.
+void fillSmoothly(const Execution& execution, FinishedMesh& mesh);
 
 }  // namespace spherical_param::internal

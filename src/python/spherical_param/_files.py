@@ -43,10 +43,6 @@ class MeshExport:
         def normals(self) -> FloatArray: ...
         @property
         def colors(self) -> Optional[ByteArray]: ...
-    def _export_points(self) -> FloatArray:
-        """The points that the mesh has elsewhere."""
-        return self.vertices
-
     def _export_added(self) -> Optional[ByteArray]:
         """(v,) 1 for each vertex that was added to the points, else 0; None if none can be."""
         return None
@@ -63,7 +59,7 @@ class MeshExport:
         import trimesh
 
         return trimesh.Trimesh(
-            self._export_points(), self.triangles, vertex_normals=self.normals, vertex_colors=self.colors, process=False
+            self.vertices, self.triangles, vertex_normals=self.normals, vertex_colors=self.colors, process=False
         )
 
     def to_open3d(self) -> Any:
@@ -71,7 +67,7 @@ class MeshExport:
         import open3d
 
         mesh = open3d.geometry.TriangleMesh(
-            open3d.utility.Vector3dVector(self._export_points()), open3d.utility.Vector3iVector(self.triangles)
+            open3d.utility.Vector3dVector(self.vertices), open3d.utility.Vector3iVector(self.triangles)
         )
         mesh.vertex_normals = open3d.utility.Vector3dVector(self.normals)
         if self.colors is not None:
@@ -85,7 +81,7 @@ class MeshExport:
         data: dict[str, Any] = {"normals": self.normals}
         if self.colors is not None:
             data["colors"] = self.colors
-        return meshio.Mesh(self._export_points(), [("triangle", self.triangles)], point_data=data)
+        return meshio.Mesh(self.vertices, [("triangle", self.triangles)], point_data=data)
 
     def write(
         self, path: Union[str, os.PathLike[str]], *, offset: Optional[tuple[float, float, float]] = None
@@ -119,7 +115,7 @@ class MeshExport:
         """
         added = self._export_added()
         x, y, z = _core.write_mesh(
-            os.fsencode(path), np.ascontiguousarray(self._export_points()),
+            os.fsencode(path), np.ascontiguousarray(self.vertices),
             np.ascontiguousarray(self.triangles), np.ascontiguousarray(self.normals), self.colors,
             added if added is not None and added.any() else None, self._export_scalars(), offset,
         )
@@ -141,14 +137,14 @@ class MeshExport:
                 import pyvista
 
                 faces = np.insert(self.triangles, 0, 3, axis=1)
-                pyvista.PolyData(self._export_points(), faces.ravel()).plot(scalars=self.colors, rgb=True)
+                pyvista.PolyData(self.vertices, faces.ravel()).plot(scalars=self.colors, rgb=True)
                 return
         self._plot()
 
     def _plot(self) -> None:
         import matplotlib.pyplot as pyplot
 
-        points, colors = self._export_points(), self.colors
+        points, colors = self.vertices, self.colors
         axes: Any = pyplot.figure().add_subplot(projection="3d")
         axes.set_box_aspect(np.ptp(points, axis=0) + 1e-300)
         if len(self.triangles):

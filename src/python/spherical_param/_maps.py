@@ -120,7 +120,7 @@ def _mesh(
             )
         if isinstance(mesh, SphereMap):
             return mesh.vertices, mesh.triangles, mesh.directions
-        return mesh._export_points(), mesh.triangles, _sphere(mesh)
+        return mesh.vertices, mesh.triangles, _sphere(mesh)
     if triangles is None or sphere is None:
         raise InvalidInput(
             "points were given without triangles and sphere; give all three, or the Result of reconstruct()"
@@ -142,8 +142,7 @@ def sphere_map(
     Parameters
     ----------
     mesh : Result, SphereMap, or array-like (v, 3)
-        A mesh of ``reconstruct`` (its smoothed or consolidated points, if it has them); or the
-        points of one, with ``triangles`` and ``sphere``. One with handles needs
+        A mesh of ``reconstruct``; or the points of one, with ``triangles`` and ``sphere``. One with handles needs
         ``handles="none"`` of ``reconstruct``, which cuts them.
     triangles : array-like of integers, (m, 3)
         Manifold, oriented outward, of genus 0, in one piece, each point used; openings stay open on
@@ -358,7 +357,7 @@ def texture_coordinates(
     ComputeError, MemoryError, KeyboardInterrupt
     """
     if isinstance(mesh, Result):
-        points = mesh._export_points()
+        points = mesh.vertices
         sphere = np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
     elif isinstance(mesh, (SphereMap, Remeshed)):
         points, sphere = mesh.vertices, mesh.directions

@@ -25,9 +25,9 @@ OTHERS = (
         "True, or callable(stage, fraction)",
         """True: a bar on the standard error. A function is called from the calling thread during the
         work. ``stage`` is "read", "view", "neighbors", "graph", "outliers", "parts",
-        "consolidation", "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality";
-        ``fraction``, in [0, 1], is that of the stage's current loop. If it returns False, the work
-        ends with Cancelled; if it raises, with that exception.""",
+        "consolidation", "openings", "embedding", "triangulation", "optimization", "smoothing",
+        "cleaning", "fill" or "quality"; ``fraction``, in [0, 1], is that of the stage's current
+        loop. If it returns False, the work ends with Cancelled; if it raises, with that exception.""",
     ),
 )
 

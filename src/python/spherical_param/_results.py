@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from enum import IntFlag
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
+from zlib import crc32
 
 import numpy as np
 
@@ -55,6 +56,7 @@ class Source:
     cloud: Cloud
     options: dict[str, Any]
     part: int  #: among the surfaces of the cloud
+    checksum: int  #: of the points
 
     @property
     def command(self) -> str:
@@ -64,38 +66,49 @@ class Source:
         return f"spherical_param.reconstruct({name}{''.join(keywords)})"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Result(Surface, MeshExport):
-    """A mesh through all points, closed or open, its quality, and its map to the sphere if it has
-    no handles.
+class OfCloud(MeshExport):
+    """A mesh whose vertices have what the points of a cloud have."""
 
-    Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
-    ``input_of_vertex`` carry anything that points have to the vertices and back:
-    ``values[mesh.input_of_vertex]``. What is written or given to other libraries has the smoothed
-    or consolidated points, if there are any, with normals and colours. In a notebook a result is
-    shown by its report.
-    """
+    if TYPE_CHECKING:
+        _source: Source
 
-    #: (v, 3) the points[input_of_vertex], then ``added_vertices`` others [unit of the input]
-    vertices: FloatArray
-    vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
-    view: Optional[View]  #: the place from which the cloud is seen as one layer
-    left_out: LeftOut  #: rows of the cloud in no surface, by reason
-    stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
-    colors: Optional[ByteArray]  #: (v, 3) of the points; None if they have none
-    _source: Source
-
+        @property
+        def input_of_vertex(self) -> IndexArray: ...
     @cached_property
     def normals(self) -> FloatArray:
         """(v, 3) of the points, or else of the mesh, weighted by angles."""
         given = self._source.cloud.normals
         if given is not None:
             return given[self.input_of_vertex]
-        return vertex_normals(self._export_points(), self.triangles)
+        return vertex_normals(self.vertices, self.triangles)
+
+    @property
+    def colors(self) -> Optional[ByteArray]:
+        """(v, 3) of the points; None if they have none."""
+        colors = self._source.cloud.colors
+        return None if colors is None else colors[self.input_of_vertex]
 
     def _export_scalars(self) -> dict[str, FloatArray]:
         scalars = self._source.cloud.scalars
         return {name: values[self.input_of_vertex] for name, values in scalars.items()}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Surface, OfCloud):
+    """A mesh through all points, closed or open, its quality, and its map to the sphere if it has
+    no handles.
+
+    Vertices are the distinct finite points, in the order of the input, where consolidation and
+    smoothing moved them, then ``added_vertices`` others; ``vertex_of_input`` and
+    ``input_of_vertex`` carry anything that points have to the vertices and back:
+    ``values[mesh.input_of_vertex]``. In a notebook a result is shown by its report.
+    """
+
+    vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
+    view: Optional[View]  #: the place from which the cloud is seen as one layer
+    left_out: LeftOut  #: rows of the cloud in no surface, by reason
+    stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
+    _source: Source
 
     def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
         """Write a page to look at: mesh, sphere, unfolding and findings, in one file.
@@ -126,8 +139,7 @@ class Result(Surface, MeshExport):
                 "this package was built without the page; install three.js (libjs-three) and build it again"
             )
         source = self._source
-        given = len(self.vertices) - self.added_vertices
-        if not np.array_equal(source.cloud.points[self.input_of_vertex[:given]], self.vertices[:given]):
+        if crc32(source.cloud.points) != source.checksum:
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
         threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
@@ -147,12 +159,6 @@ class Result(Surface, MeshExport):
             text = html.escape(page.read_text(encoding="utf-8"))
         return f'<iframe srcdoc="{text}" width="100%" height="700" style="border: 0"></iframe>'
 
-    def _export_points(self) -> FloatArray:
-        for moved in (self.filled, self.smoothed, self.consolidated):
-            if moved is not None:
-                return moved
-        return self.vertices
-
     def _export_added(self) -> ByteArray:
         marks = np.zeros(len(self.vertices), np.uint8)
         marks[len(marks) - self.added_vertices :] = 1
@@ -171,7 +177,7 @@ if Result.__doc__:  # not with python -OO
     Result.__doc__ = f"{inspect.cleandoc(Result.__doc__)}\n\n{attributes('Surface')}"
 
 
-class Results(tuple[Result, ...], MeshExport):
+class Results(tuple[Result, ...], OfCloud):
     """The results of the surfaces of a cloud, the largest first, with a common verdict.
 
     All of them together are a mesh, too: the vertices of one after those of the other.
@@ -183,48 +189,18 @@ class Results(tuple[Result, ...], MeshExport):
     view: Optional[View]  #: the place from which the cloud is seen as one layer
     left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
-
-    @cached_property
-    def vertices(self) -> FloatArray:
-        """(v, 3) of all surfaces [unit of the input]."""
-        return np.concatenate([each.vertices for each in self])
-
-    @cached_property
-    def triangles(self) -> IndexArray:
-        """(t, 3) of all surfaces, into ``vertices``."""
-        first = np.cumsum([0] + [len(each.vertices) for each in self])
-        moved = [each.triangles + at for each, at in zip(self, first)]
-        return np.concatenate(moved, dtype=np.int32)
-
-    @property
-    def input_of_vertex(self) -> IndexArray:
-        """(v,) row of the cloud of each vertex."""
-        return np.concatenate([each.input_of_vertex for each in self])
-
-    @property
-    def normals(self) -> FloatArray:
-        """(v, 3) as ``Result.normals``."""
-        return np.concatenate([each.normals for each in self])
-
-    @property
-    def colors(self) -> Optional[ByteArray]:
-        """(v, 3) of the points; None if they have none."""
-        colors = [each.colors for each in self if each.colors is not None]
-        return np.concatenate(colors) if colors else None
+    vertices: FloatArray  #: (v, 3) of all surfaces [unit of the input]
+    triangles: IndexArray  #: (t, 3) of all surfaces, into ``vertices``
+    input_of_vertex: IndexArray  #: (v,) row of the cloud of each vertex
+    _is_added: ByteArray
+    _source: Source
 
     def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
         """Write a page to look at, of the largest surface. As ``Result.report``."""
         self[0].report(path, progress=progress)
 
-    def _export_points(self) -> FloatArray:
-        return np.concatenate([each._export_points() for each in self])
-
     def _export_added(self) -> ByteArray:
-        return np.concatenate([each._export_added() for each in self])
-
-    def _export_scalars(self) -> dict[str, FloatArray]:
-        parts = [each._export_scalars() for each in self]
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        return self._is_added
 
     def _repr_html_(self) -> Optional[str]:
         return self[0]._repr_html_()
@@ -241,22 +217,17 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     """
     left_out = LeftOut(**fields["left_out"])
     view = None if fields["view"] is None else View(**fields["view"])
+    checksum = crc32(cloud.points)
     results = []
     for part, surface in enumerate(fields["surfaces"]):
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
         vertex_of_input[surface["inputs"]] = surface["vertex_of_input"]
-        vertices = surface["input_of_vertex"]
-        positions = cloud.points[vertices]
-        if surface["filled"] is not None:
-            given = len(vertices) - surface["added_vertices"]
-            positions[given:] = surface["filled"][given:]
         figures = make("Surface", surface)
         figures["vertex_of_input"] = vertex_of_input
         results.append(
             Result(
-                **figures, vertices=positions, view=view, left_out=left_out, stages=fields["stages"],
-                colors=None if cloud.colors is None else cloud.colors[vertices],
-                _source=Source(cloud, options, part),
+                **figures, view=view, left_out=left_out, stages=fields["stages"],
+                _source=Source(cloud, options, part, checksum),
             )
         )
     all_results = Results(results)
@@ -266,4 +237,9 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     all_results.view = view
     all_results.left_out = left_out
     all_results.stages = fields["stages"]
+    all_results.vertices = fields["mesh"]["vertices"]
+    all_results.triangles = fields["mesh"]["triangles"]
+    all_results.input_of_vertex = fields["mesh"]["input_of_vertex"]
+    all_results._is_added = fields["mesh"]["is_added"]
+    all_results._source = results[0]._source
     return all_results

@@ -38,6 +38,7 @@ void addDisc(double height, std::vector<Point>& points, Result& result) {
         corners.insert(corners.end(), {v, next, v + kSpokes, next, next + kSpokes, v + kSpokes});
     }
   disc.triangles = Eigen::Map<const Triangles>(corners.data(), 3, 2 * (kRings - 1) * kSpokes);
+  disc.points = positions;
   disc.sphere = positions.colwise().normalized();
   disc.diagnosis.triangle_marks.resize(corners.size() / 3);
   disc.diagnosis.triangle_marks[100] = triangle_mark::self_intersection;
@@ -60,7 +61,7 @@ struct ReportOfTwoDiscs : testing::Test {
 };
 
 TEST_F(ReportOfTwoDiscs, HasAllVerticesTrianglesAndMarks) {
-  const ReportMesh mesh = reportMesh(cloud, surfaces, 1);
+  const ReportMesh mesh = reportMesh(cloud, surfaces);
   ASSERT_EQ(mesh.positions.cols(), 2 * kRings * kSpokes);
   for (Index v = 0; v < mesh.positions.cols(); ++v)
     EXPECT_EQ(mesh.positions.col(v), cloud.data->position(static_cast<std::size_t>(
@@ -81,15 +82,15 @@ TEST_F(ReportOfTwoDiscs, HasAllVerticesTrianglesAndMarks) {
 }
 
 TEST_F(ReportOfTwoDiscs, HasACommonSphereIfTheyAreSeenFromOnePlace) {
-  EXPECT_EQ(reportMesh(cloud, surfaces, 1).sphere.cols(), 0);
+  EXPECT_EQ(reportMesh(cloud, surfaces).sphere.cols(), 0);
   cloud.result.view = View{};
-  const ReportMesh mesh = reportMesh(cloud, surfaces, 1);
+  const ReportMesh mesh = reportMesh(cloud, surfaces);
   EXPECT_EQ(mesh.sphere, mesh.positions.colwise().normalized());
 }
 
 TEST_F(ReportOfTwoDiscs, SharesTheTrianglesOfThePageAndKeepsOpenings) {
   constexpr std::size_t most = (kRings - 1) * kSpokes;  // a quarter
-  const ReportMesh mesh = reportMesh(cloud, surfaces, 1, most);
+  const ReportMesh mesh = reportMesh(cloud, surfaces, most);
   EXPECT_LE(mesh.marks.size(), most);
   EXPECT_GE(mesh.marks.size(), most / 2);
   // The area of the discs, which are polygons, without their holes.

@@ -25,16 +25,9 @@ PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t h
 /** \brief Makes a cloud of NaN. */
 PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points);
 
-/** \brief Gives the used points of a cloud the positions of their vertices, 3 x v. */
-PCL_EXPORTS void placeVertices(const spherical_param::Positions& vertices,
-                               const std::vector<spherical_param::Index>& vertex_of_used,
-                               const pcl::Indices& used_points,
-                               pcl::PointCloud<pcl::PointXYZ>& cloud);
-
-/** \brief Appends triangles of vertices as polygons of points. */
-PCL_EXPORTS void appendPolygons(const spherical_param::Triangles& triangles,
-                                const pcl::Indices& point_of_vertex,
-                                std::vector<pcl::Vertices>& polygons);
+/** \brief Makes polygons of points from triangles of vertices. */
+PCL_EXPORTS std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
+                                                  const pcl::Indices& point_of_vertex);
 
 }  // namespace detail
 
@@ -76,70 +69,56 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return cloudOf(&spherical_param::Surface::sphere);
-}
-
-template <typename PointInT>
-pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
-  return cloudOf(&spherical_param::Surface::moved);
-}
-
-template <typename PointInT>
-template <typename Places>
-pcl::PointCloud<pcl::PointXYZ>::Ptr
-SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = detail::cloudOfNothing(input_size_);
-  std::size_t used = 0;
+  std::size_t placed = 0;
   for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
     const spherical_param::Surface& surface = result_.surfaces[part];
-    const auto& positions = std::invoke(places, surface);
-    if (positions.cols() == 0)
+    if (surface.sphere.cols() == 0)
       continue;
-    detail::placeVertices(positions, surface.vertex_of_input, parts_[part].used_indices, *cloud);
-    used += surface.inputs.size();
+    const pcl::Indices& used = parts_[part].used_indices;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      (*cloud)[static_cast<std::size_t>(used[i])].getVector3fMap() =
+          surface.sphere.col(surface.vertex_of_input[i]).template cast<float>();
+    placed += used.size();
   }
-  cloud->is_dense = used == input_size_;
-  if (used == 0)
-    cloud = detail::cloudOfNothing(0);
-  return cloud;
+  cloud->is_dense = placed == input_size_;
+  return placed == 0 ? detail::cloudOfNothing(0) : cloud;
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonMesh& output) {
-  output.polygons.clear();
   meshPoints(options_.fill);
-  PointCloudIn added;
-  for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
-    const spherical_param::Surface& surface = result_.surfaces[part];
-    pcl::Indices vertex_indices = parts_[part].vertex_indices;
-    for (std::size_t v = surface.vertexCount() - surface.added_vertices; v < surface.vertexCount();
-         ++v) {
-      PointInT point = (*input_)[static_cast<std::size_t>(vertex_indices[v])];
-      const auto place = surface.filled.col(static_cast<Eigen::Index>(v));
-      point.x = static_cast<float>(place.x());
-      point.y = static_cast<float>(place.y());
-      point.z = static_cast<float>(place.z());
-      vertex_indices[v] = static_cast<pcl::index_t>(input_->size() + added.size());
-      added.push_back(point);
+  const spherical_param::JoinedMesh mesh = spherical_param::joined(result_);
+  pcl::Indices point_of_vertex = vertexIndices();
+  PointCloudIn cloud = *input_;
+  for (std::size_t v = 0; v < point_of_vertex.size(); ++v) {
+    if (mesh.is_added[v] != 0) {
+      cloud.push_back(PointInT(cloud[static_cast<std::size_t>(point_of_vertex[v])]));
+      point_of_vertex[v] = static_cast<pcl::index_t>(cloud.size() - 1);
     }
-    detail::appendPolygons(surface.triangles, vertex_indices, output.polygons);
+    PointInT& point = cloud[static_cast<std::size_t>(point_of_vertex[v])];
+    const auto place = mesh.points.col(static_cast<Eigen::Index>(v)).template cast<float>();
+    point.x = place.x();
+    point.y = place.y();
+    point.z = place.z();
   }
-  if (added.empty()) {
-    pcl::toPCLPointCloud2(*input_, output.cloud);
-  } else {
-    PointCloudIn cloud = *input_;
-    cloud += added;
-    pcl::toPCLPointCloud2(cloud, output.cloud);
-  }
+  pcl::toPCLPointCloud2(cloud, output.cloud);
+  output.polygons = detail::polygonsOf(mesh.triangles, point_of_vertex);
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
   meshPoints(FillMode::Flat);
-  polygons.clear();
-  for (std::size_t part = 0; part < result_.surfaces.size(); ++part)
-    detail::appendPolygons(result_.surfaces[part].triangles, parts_[part].vertex_indices, polygons);
+  polygons = detail::polygonsOf(spherical_param::joined(result_).triangles, vertexIndices());
+}
+
+template <typename PointInT>
+pcl::Indices SphericalParamReconstruction<PointInT>::vertexIndices() const {
+  pcl::Indices all;
+  for (const PartIndices& part : parts_)
+    all.insert(all.end(), part.vertex_indices.begin(), part.vertex_indices.end());
+  return all;
 }
 
 template <typename PointInT>

@@ -17,8 +17,10 @@ void toInput(Consolidation& consolidation, Surface& result);
 
 /// Translates a surface of some points to the indices of the whole cloud.
 ///
-/// \param inputs   the indices of these points in the cloud, ascending.
+/// \param points   3 x m, those of the surface.
+/// \param inputs   their indices in the cloud, ascending.
 /// \param unmeshed receives those without a vertex.
-void toCloud(const std::vector<Index>& inputs, Surface& surface, std::vector<Index>& unmeshed);
+void toCloud(const Positions& points, const std::vector<Index>& inputs, Surface& surface,
+             std::vector<Index>& unmeshed);
 
 }  // namespace spherical_param::internal

@@ -34,7 +34,9 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   EXPECT_TRUE(surface.topology.unused_vertices.empty());
 
   std::vector<Index> unmeshed;
-  toCloud({10, 11, 12, 13, 14, 15}, surface, unmeshed);
+  surface.points.resize(3, 4);
+  toCloud(points, {10, 11, 12, 13, 14, 15}, surface, unmeshed);
+  EXPECT_EQ(surface.points, points(Eigen::all, std::vector<Index>{0, 2, 3, 5}));
   EXPECT_EQ(unmeshed, (std::vector<Index>{11, 14}));
   EXPECT_EQ(surface.inputs, (std::vector<Index>{10, 12, 13, 15}));
   EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{10, 12, 13, 15}));
@@ -53,10 +55,10 @@ TEST(ResultUnits, PointsWithoutAVertexAreNotMerged) {
   surface.input_of_vertex = {1, 2};
   toInput(consolidation, surface);
   EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{2, 5}));
-  EXPECT_EQ(surface.consolidation.merged, 1U);
+  EXPECT_EQ(surface.consolidation->merged, 1U);
 
   std::vector<Index> unmeshed;
-  toCloud({0, 1, 2, 3, 4, 5}, surface, unmeshed);
+  toCloud({}, {0, 1, 2, 3, 4, 5}, surface, unmeshed);
   EXPECT_EQ(unmeshed, (std::vector<Index>{0, 1}));
   EXPECT_EQ(surface.duplicates(), 1U);
 }

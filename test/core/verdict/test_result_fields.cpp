@@ -1,6 +1,6 @@
 #include "spherical_param/result_fields.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 #include "result_units.h"
 
 #include <cstring>
@@ -103,7 +103,8 @@ Surface onNodes() {
   Surface r;
   r.triangles = Triangles{{0, 0, 0, 1}, {1, 2, 3, 3}, {2, 3, 1, 2}};
   r.sphere = Positions{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
-  r.smoothed = Positions::Constant(3, 4, 1.0);
+  r.points = Positions::Constant(3, 4, 1.0);
+  r.smoothing.emplace();
   r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
   r.history.vertices = {3, 0};
   r.history.frames.resize(1);
@@ -141,7 +142,7 @@ TEST(ResultFields, QuantitiesAreScaledByTheirPowersAndIndicesAreThoseOfVertices)
     EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
     ++quantities;
   });
-  // 21 of measures, 5 of smoothing, 12 of smoothed points, 7, 4, 4 and 5 of opening, loop of a
+  // 21 of measures, 5 of smoothing, 12 of points, 7, 4, 4 and 5 of opening, loop of a
   // handle, torn handle and bridge.
   EXPECT_EQ(quantities, 58U);
   using Indices = std::vector<Index>;

@@ -41,10 +41,9 @@ bool hasTangle(const Surface& result) {
 
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
-  return result.is_noisy && result.consolidated.cols() + result.smoothed.cols() == 0 &&
-         result.outliers.empty() && result.diagnosis.bridges.empty() &&
-         result.diagnosis.cut_handles == 0 && !result.diagnosis.is_on_lines &&
-         !result.diagnosis.fills_volume;
+  return result.is_noisy && !result.consolidation && !result.smoothing && result.outliers.empty() &&
+         result.diagnosis.bridges.empty() && result.diagnosis.cut_handles == 0 &&
+         !result.diagnosis.is_on_lines && !result.diagnosis.fills_volume;
 }
 
 /// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
@@ -179,7 +178,7 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
       std::tie(fold.option, fold.value) = std::pair("method", "default");
     else if (isRough(result))
       std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
-    else if (result.is_noisy && result.consolidated.cols() > 0 && given.smoothing == 0)
+    else if (result.is_noisy && result.consolidation && given.smoothing == 0)
       std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
     findings.push_back(fold);
   }

@@ -115,6 +115,12 @@ struct Renumbering {
 
 void toInput(OrderedPoints& nodes, Surface& result) {
   dropUnused(nodes, result);
+  // Added nodes are behind the others.
+  for (std::size_t v = nodes.vertex_of_node.size(); v < result.input_of_vertex.size(); ++v) {
+    const Index nearest = nodes.vertex_of_node[result.input_of_vertex[v]];
+    nodes.vertex_of_node.push_back(nodes.input_of_vertex.count());
+    nodes.input_of_vertex.push_back(nodes.input_of_vertex[nearest]);
+  }
   const Renumbering renumbering{nodes.vertex_of_node, nodes.input_of_vertex.size()};
   visitValues(result, Scaling{nodes.exponent});
   visitValues(result, renumbering);
@@ -125,14 +131,14 @@ void toInput(OrderedPoints& nodes, Surface& result) {
 }
 
 void toInput(Consolidation& consolidation, Surface& result) {
-  result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
   result.consolidation = consolidation.report;
   // Of those with a vertex. Points that came to one place are one vertex.
   Index merged = 0;
   for (std::size_t point = 0; point < result.vertex_of_input.size(); ++point)
     if (result.vertex_of_input[point] >= 0)
       merged += consolidation.distinct_at[point];
-  result.consolidation.merged = static_cast<std::size_t>(merged) - result.input_of_vertex.size();
+  result.consolidation->merged =
+      static_cast<std::size_t>(merged) + result.added_vertices - result.input_of_vertex.size();
   Indexed<Index> first_of_point(result.vertex_of_input.size(), -1);
   Index input = 0;
   for (const Index point : consolidation.point_of_input) {
@@ -146,7 +152,12 @@ void toInput(Consolidation& consolidation, Surface& result) {
   result.vertex_of_input = std::move(consolidation.point_of_input);
 }
 
-void toCloud(const std::vector<Index>& inputs, Surface& surface, std::vector<Index>& unmeshed) {
+void toCloud(const Positions& points, const std::vector<Index>& inputs, Surface& surface,
+             std::vector<Index>& unmeshed) {
+  // The unit of nodes has rounded denormal numbers.
+  if (!surface.consolidation && !surface.smoothing)
+    for (std::size_t v = 0; v < surface.vertexCount() - surface.added_vertices; ++v)
+      surface.points.col(static_cast<Eigen::Index>(v)) = points.col(surface.input_of_vertex[v]);
   renumber(inputs, surface.input_of_vertex);
   renumber(inputs, surface.outliers);
   std::vector<Index> vertices;

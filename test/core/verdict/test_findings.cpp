@@ -1,6 +1,6 @@
 #include "findings.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 
 namespace spherical_param::test {
 namespace {
@@ -102,7 +102,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       {{},
        [](Surface& r) {
          r.is_noisy = true;
-         r.smoothed.resize(3, kPoints);
+         r.smoothing.emplace();
        }},
       {{"1 handle, cut: the mesh is a sphere", "", "", true},
        [](Surface& r) { r.diagnosis.genus = 1; }},
