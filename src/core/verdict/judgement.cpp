@@ -6,8 +6,9 @@
 #include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
-#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace spherical_param::internal {
 
