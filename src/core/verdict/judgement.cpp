@@ -7,8 +7,9 @@
 #include "surface_diagnosis.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace spherical_param::internal {
 

@@ -70,8 +70,9 @@ class OfCloud(MeshExport):
     """A mesh whose vertices have what the points of a cloud have."""
 
     if TYPE_CHECKING:
-        _source: Source
 
+        @property
+        def _source(self) -> Source: ...
         @property
         def input_of_vertex(self) -> IndexArray: ...
     @cached_property
