@@ -107,10 +107,11 @@ void parse(const CommandLine& command_line, Settings& settings) {
   settings.output = files[1];
   requireFormat(settings.input, FileUse::ReadCloud);
   requireFormat(settings.output, FileUse::WriteMesh);
+  parseReconstructionOptions(command_line, settings.reconstruction);
   if (!settings.sphere.empty()) {
     requireFormat(settings.sphere, FileUse::WriteMesh);
+    settings.reconstruction.options.details = true;
   }
-  parseReconstructionOptions(command_line, settings.reconstruction);
   settings.page = parseHtmlReport(command_line);
   checkNumbers(settings);
   if (!settings.page.empty()) {

@@ -179,7 +179,8 @@ struct Options : Execution {
   IntersectionMode intersections = IntersectionMode::AsTopology;
 
   std::uint32_t seed = 1;  ///< of all random choices
-  /// Fill Surface::vertex_residuals and SurfaceDiagnosis::triangle_marks.
+  /// Fill Surface::sphere, where a mesh needs no embedding, Surface::vertex_residuals and
+  /// SurfaceDiagnosis::triangle_marks.
   bool details = false;
 };
 

@@ -222,8 +222,9 @@ struct Surface {
   std::vector<std::vector<Index>> boundary;
   /// Openings found in the surface, open or filled.
   std::vector<Opening> openings;
-  /// 3 x v, unit vectors: the embedding of each vertex; empty if the mesh has handles, added
-  /// vertices, or tubes so long that one sphere would squeeze them beyond the range of double.
+  /// 3 x v, unit vectors: the embedding of each vertex. A view has it, and the published method;
+  /// others with TopologyMode::Sphere, a tolerance, a history or Options::details. Empty if the
+  /// mesh has handles, added vertices, or only triangles that are certain.
   Positions sphere;
 
   std::vector<Index> inputs;           ///< n entries: the input points of the surface, ascending

@@ -72,6 +72,7 @@ public:
     best_->part.graph_genus = best_->genus;
     if (options_.handles == HandleMode::None && hasSureHandles())
       best_->part.graph_genus = facesGenus();
+    takeSphere();
     return std::move(*best_);
   }
 
@@ -192,6 +193,20 @@ private:
   // --- 2. The sphere
 
   bool mayBeSphere() { return !isSound(); }
+
+  /// Gives the best mesh its embedding, if it is wanted and there is one.
+  void takeSphere() {
+    const bool is_wanted = options_.details || options_.topology == TopologyMode::Sphere ||
+                           options_.embedding.tolerance || options_.embedding.history_vertices > 0;
+    Embedding& embedding = best_->part.embedding;
+    if (!is_wanted || best_->genus > 0 || best_->part.has_certain_triangles_only) {
+      embedding = {};
+    } else if (embedding.directions.cols() == 0) {
+      embedding = embedding_.directions.cols() > 0 ? std::move(embedding_) : embeddingOf();
+      if (volumeSign(embedding.directions, best_->part.mesh.triangles) < 0)
+        mirror(embedding);
+    }
+  }
 
   const Triangles& sphere() {
     if (!sphere_) {
