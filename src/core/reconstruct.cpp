@@ -1,15 +1,14 @@
 #include "spherical_param/reconstruct.h"
 
+#include "attempts.h"
 #include "cloud_surfaces.h"
 #include "consolidation.h"
-#include "attempts.h"
 #include "embedding_history.h"
 #include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
 #include "mesh_cleaning.h"
-#include "open_mesh.h"
 #include "open_surface.h"
 #include "orientation.h"
 #include "paper_method.h"
@@ -88,12 +87,13 @@ PartMesh meshAsPublished(const Positions& points, const Graph& graph, const Opti
                                 clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
-  Triangles triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
-  orientOutward(points, triangles, mesh.embedding);
+  mesh.mesh = SphereMesh(paper::convexHull(mesh.embedding.directions, clock.execution()),
+                         graph.size(), clock.execution().threads);
+  orientOutward(points, mesh.mesh, mesh.embedding);
   clock.begin("quality");
-  mesh.intersecting =
-      findPairsUpTo(mostOfUsable(columnCount(triangles)), points, triangles, clock.execution());
-  finishMesh(points, graph, std::move(triangles), options, clock, mesh);
+  mesh.intersecting = findPairsUpTo(mostOfUsable(mesh.mesh.slotCount()), points,
+                                    mesh.mesh.triangles(), clock.execution());
+  finishMesh(points, graph, options, clock, mesh);
   return mesh;
 }
 
@@ -111,8 +111,8 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
   clock.keep(0.0);
   FinishedMesh finished;
   finished.faced_by = orient(points, info, mesh.mesh, mesh.embedding);
-  const Triangles triangles = surfaceOf(mesh.mesh);
-  finished.points = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  const Triangles triangles = mesh.mesh.surfaceTriangles();
+  finished.points = mesh.isSmoothed() ? mesh.smoothed : points;
   finished.triangles = triangles;
   finished.input_of_vertex.resize(columnCount(points));
   std::iota(finished.input_of_vertex.begin(), finished.input_of_vertex.end(), Index{0});

@@ -1,6 +1,5 @@
 #include "mesh_cleaning.h"
 
-#include "face_mesh.h"
 #include "indexed.h"
 #include "intersection_removal.h"
 
@@ -11,26 +10,25 @@ namespace spherical_param::internal {
 namespace {
 
 /// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
-IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const OpenMesh& open,
+IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const SphereMesh& mesh,
                             const Execution& execution) {
-  const std::vector<Index> triangles = trianglesOfSurface(open);
-  IntersectingPairs found =
-      findPairsUpTo(most, positions, open.triangles(Eigen::all, triangles), execution);
+  const std::vector<Index> surface = mesh.surface();
+  IntersectingPairs found = findPairsUpTo(most, positions, mesh.surfaceTriangles(), execution);
   for (auto& pair : found.pairs)
     for (Index& t : pair)
-      t = triangles[static_cast<std::size_t>(t)];
+      t = surface[static_cast<std::size_t>(t)];
   return found;
 }
 
 /// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
 /// them. Returns how many intersect.
 std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
-                                        const IntersectingTriangles& pairs, OpenMesh& open) {
-  OpenMesh rest = open;
+                                        const IntersectingTriangles& pairs, SphereMesh& mesh) {
+  SphereMesh rest = mesh;
   const std::size_t left_out = leaveOutTangles(vertices, pairs, rest);
-  if (surfaceCount(rest) + most < surfaceCount(open))
+  if (rest.surfaceCount() + most < mesh.surfaceCount())
     return std::nullopt;
-  open = std::move(rest);
+  mesh = std::move(rest);
   return left_out;
 }
 
@@ -48,8 +46,8 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
   constexpr std::size_t tangle_of = 10;
   const bool removes = removesIntersections(options) && !mesh.optimization.is_out_of_time;
   const bool may_open = options.surface != SurfaceMode::Closed;
-  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
-  const std::size_t triangles = surfaceCount(mesh.mesh);
+  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed : points;
+  const std::size_t triangles = mesh.mesh.surfaceCount();
   // The optimisation has left those of a closed mesh on its points. One of two may stay.
   IntersectingPairs& found = mesh.intersecting;
   if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
@@ -67,23 +65,20 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
     }
   }
   if (!found.pairs.empty())
-    found = findPairsUpTo(mostOfUsable(triangles), positions, surfaceOf(mesh.mesh), execution);
+    found =
+        findPairsUpTo(mostOfUsable(triangles), positions, mesh.mesh.surfaceTriangles(), execution);
 }
 
-bool takeCertainFaces(const Positions& points, const FaceMesh& faces, const Execution& execution,
+bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Execution& execution,
                       PartMesh& mesh) {
   constexpr std::size_t vertices_of = 3;
-  mesh.mesh = {faces.triangles, faces.is_filling};
-  const IntersectingPairs found =
-      pairsUpTo(surfaceCount(mesh.mesh), points, mesh.mesh, execution);
+  mesh.mesh = faces;
+  const IntersectingPairs found = pairsUpTo(faces.surfaceCount(), points, faces, execution);
   if (found.is_sample)
     return false;
   mesh.left_out_triangles = leaveOutTangles(columnCount(points), found.pairs, mesh.mesh);
   mesh.has_certain_triangles_only = true;
-  const Triangles surface = surfaceOf(mesh.mesh);
-  std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
-  sortUnique(vertices);
-  return vertices_of * vertices.size() >= columnCount(points);
+  return vertices_of * mesh.mesh.surfaceVertexCount() >= columnCount(points);
 }
 
 }  // namespace spherical_param::internal

@@ -18,7 +18,7 @@ namespace spherical_param::internal {
 /// What the phases of an optimisation share: the mesh, its moves, the limits.
 class Workbench {
 public:
-  Workbench(const Positions& points, const Triangles& triangles, const Graph& graph,
+  Workbench(const Positions& points, SphereMesh start, const Graph& graph,
             const OptimizationOptions& options, const Execution& execution);
   Workbench(const Workbench&) = delete;
   Workbench& operator=(const Workbench&) = delete;

@@ -2,7 +2,6 @@
 
 #include "boundary_loops.h"
 #include "corner_table.h"
-#include "progress.h"
 #include "rotation_system.h"
 #include "sphere_mesh.h"
 #include "spherical_param/mesh_topology.h"
@@ -90,8 +89,8 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
   return true;
 }
 
-/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times the
-/// angles there, and the longest sides. None of the new edges is there already.
+/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times
+/// the angles there, and the longest sides. None of the new edges is there already.
 ///
 /// \param loop, edges, triangles as for cutIntoTriangles().
 /// \param beyond unit normals of the triangles beyond the sides of the loop.
@@ -458,52 +457,50 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 /// Closes a mesh of faces.
 ///
 /// \param faces certain triangles; others fill.
-std::optional<FaceMesh> meshOf(const Positions& points, const Graph& graph, const Triangles& open,
-                               TriangleList& faces) {
-  FaceMesh mesh;
-  mesh.triangles = joined(points, graph, closed(points, withoutPinches(open, graph.size())));
+std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, const Triangles& open,
+                                 TriangleList& faces) {
+  const Triangles triangles =
+      joined(points, graph, closed(points, withoutPinches(open, graph.size())));
   // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
-  if (mesh.triangles.cols() < 4)
+  if (triangles.cols() < 4)
     return std::nullopt;
-  mesh.genus = static_cast<std::size_t>(*checkTopology(mesh.triangles, graph.size()).genus);
+  SphereMesh mesh(triangles, graph.size());
   std::sort(faces.begin(), faces.end());
-  for (const auto& t : mesh.triangles.colwise())
-    mesh.is_filling.push_back(
-        std::binary_search(faces.begin(), faces.end(), std::array<Index, 3>{t[0], t[1], t[2]}) ? 0
-                                                                                               : 1);
+  for (Index t = 0; t < mesh.size(); ++t)
+    mesh.setOpen(t, !std::binary_search(faces.begin(), faces.end(), mesh.vertices(t)));
   return mesh;
 }
 
 }  // namespace
 
-std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph,
-                                  const RotationSystem& rotation) {
+std::optional<SphereMesh> meshFaces(const Positions& points, const Graph& graph,
+                                    const RotationSystem& rotation) {
   TriangleList found = trianglesOf(points, rotation);
   return meshOf(points, graph, matrixOf(found), found);
 }
 
-std::optional<FaceMesh> withoutHandles(const Positions& points, const Graph& graph,
-                                       FaceMesh mesh) {
-  while (mesh.genus > 0) {
-    const SphereMesh whole(mesh.triangles, graph.size());
-    PlanarRegion region(points, whole);
+std::optional<SphereMesh> withoutHandles(const Positions& points, const Graph& graph,
+                                         SphereMesh mesh) {
+  while (mesh.genus() > 0) {
+    PlanarRegion region(points, mesh);
     region.grow(0);
     TriangleList faces;
-    for (Index t = 0; t < whole.size(); ++t)
-      if (mesh.is_filling[t] == 0)
-        faces.push_back(whole.vertices(t));
+    for (const Index t : mesh.surface())
+      faces.push_back(mesh.vertices(t));
     const auto stays = [&](Eigen::Index t) { return region.contains(t); };
-    std::optional<FaceMesh> rest =
-        meshOf(points, graph, filtered(mesh.triangles, stays), faces);
-    if (!rest || rest->genus >= mesh.genus)
+    std::optional<SphereMesh> rest =
+        meshOf(points, graph, filtered(mesh.triangles(), stays), faces);
+    if (!rest || rest->genus() >= mesh.genus())
       return std::nullopt;
     mesh = std::move(*rest);
   }
   return mesh;
 }
 
-Triangles withAllNodes(const Positions& points, const Graph& graph, const Triangles& closed) {
-  SphereMesh mesh(closed, graph.size());
+SphereMesh withAllNodes(const Positions& points, const Graph& graph, const SphereMesh& faces) {
+  SphereMesh mesh = faces;
+  for (Index t = 0; t < mesh.size(); ++t)
+    mesh.setOpen(t, false);
   Indexed<Index> due = firstIndices(graph.size());
   for (Index i = 0; i < due.count(); ++i) {
     const Index v = due[i];
@@ -514,7 +511,7 @@ Triangles withAllNodes(const Positions& points, const Graph& graph, const Triang
       if (mesh.triangleAt(w) < 0)
         due.push_back(w);
   }
-  return mesh.triangles();
+  return mesh;
 }
 
 }  // namespace spherical_param::internal

@@ -225,7 +225,8 @@ void flipInView(const Positions& points, ViewMesh& view, const Execution& execut
   for (const auto& t : view.triangles.colwise())
     lengths.push_back((all.col(t[0]) - all.col(t[1])).norm());
   graph.lengths.push_back(medianOf(lengths));
-  EnergyMesh mesh(all, view.triangles, graph, execution.threads);
+  EnergyMesh mesh(all, SphereMesh(view.triangles, columnCount(all), execution.threads), graph,
+                  execution.threads);
   const Signs signs(view.place, all);
   mesh.setFlipRule([&](const SphereMesh::Diamond& at) {
     const auto is_behind = [&](Index v) { return v == view.behind; };
