@@ -208,27 +208,27 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
 /// Leaves out the surfaces that are not usable, if the others have a third of the points.
 ///
 /// \param failed receives their points.
-void dropTangles(Result& result, std::vector<Index>& failed) {
-  constexpr std::size_t kept_of = 3;
-  const auto is_tangle = [](const Surface& surface) {
+void leaveOutUnusable(Result& result, std::vector<Index>& failed) {
+  constexpr double min_kept = 1.0 / 3.0;
+  const auto is_unusable = [](const Surface& surface) {
     return !surface.isUsable() && !surface.is_out_of_time;
   };
   std::vector<Surface>& surfaces = result.surfaces;
   std::vector<Index> dropped;
-  std::size_t tangles = 0;
+  std::size_t unusable = 0;
   std::size_t kept = 0;
   for (const Surface& surface : surfaces)
-    if (is_tangle(surface)) {
+    if (is_unusable(surface)) {
       dropped.insert(dropped.end(), surface.inputs.begin(), surface.inputs.end());
-      ++tangles;
+      ++unusable;
     } else {
       kept += surface.inputs.size();
     }
-  if (tangles == 0 || kept_of * kept < kept + dropped.size())
+  if (unusable == 0 || kept < fractionOf(min_kept, kept + dropped.size()))
     return;
-  surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_tangle), surfaces.end());
+  surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_unusable), surfaces.end());
   result.failures.push_back(
-      failureOf(tangles, dropped.size(), "more than 1 % of the triangles intersect"));
+      failureOf(unusable, dropped.size(), "more than 1 % of the triangles intersect"));
   failed.insert(failed.end(), dropped.begin(), dropped.end());
 }
 
@@ -267,7 +267,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
   if (removesIntersections(options))
-    dropTangles(result, failed);
+    leaveOutUnusable(result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
   std::sort(left_out.begin(), left_out.end());

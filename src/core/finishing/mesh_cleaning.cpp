@@ -41,9 +41,9 @@ bool removesIntersections(const Options& options) {
 void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
                PartMesh& mesh) {
   // More of a surface is no spot, but a tangle.
-  constexpr std::size_t vertices_of = 500;
-  constexpr std::size_t triangles_of = 100;
-  constexpr std::size_t tangle_of = 10;
+  constexpr double max_vertices = 0.002;
+  constexpr double max_triangles = 0.01;
+  constexpr double max_intersecting = 0.1;
   const bool removes = removesIntersections(options) && !mesh.optimization.is_out_of_time;
   const bool may_open = options.surface != SurfaceMode::Closed;
   const Positions& positions = mesh.isSmoothed() ? mesh.smoothed : points;
@@ -51,14 +51,17 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
   // The optimisation has left those of a closed mesh on its points. One of two may stay.
   IntersectingPairs& found = mesh.intersecting;
   if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
-    found = pairsUpTo(removes ? 2 * triangles / tangle_of : 1, positions, mesh.mesh, execution);
+    found = pairsUpTo(removes ? fractionOf(2.0 * max_intersecting, triangles) : 1, positions,
+                      mesh.mesh, execution);
   if (!found.pairs.empty() && !found.is_sample && removes) {
-    const Removal most{columnCount(points) / vertices_of, may_open ? triangles / triangles_of : 0};
+    const Removal most{fractionOf(max_vertices, columnCount(points)),
+                       may_open ? fractionOf(max_triangles, triangles) : 0};
     std::optional<std::size_t> left_out;
     if (const auto removal = clearIntersections(positions, found.pairs, most, mesh.mesh))
       left_out = removal->triangles;
     else if (may_open)
-      left_out = leaveOutUpTo(triangles / tangle_of, columnCount(points), found.pairs, mesh.mesh);
+      left_out = leaveOutUpTo(fractionOf(max_intersecting, triangles), columnCount(points),
+                              found.pairs, mesh.mesh);
     if (left_out) {
       mesh.left_out_triangles = *left_out;
       found = {};
@@ -71,14 +74,14 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
 
 bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Execution& execution,
                       PartMesh& mesh) {
-  constexpr std::size_t vertices_of = 3;
+  constexpr double min_vertices = 1.0 / 3.0;
   mesh.mesh = faces;
   const IntersectingPairs found = pairsUpTo(faces.surfaceCount(), points, faces, execution);
   if (found.is_sample)
     return false;
   mesh.left_out_triangles = leaveOutTangles(columnCount(points), found.pairs, mesh.mesh);
   mesh.has_certain_triangles_only = true;
-  return vertices_of * mesh.mesh.surfaceVertexCount() >= columnCount(points);
+  return mesh.mesh.surfaceVertexCount() >= fractionOf(min_vertices, columnCount(points));
 }
 
 }  // namespace spherical_param::internal

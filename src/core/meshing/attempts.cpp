@@ -88,14 +88,14 @@ private:
   /// Fewer intersections, then more points, then less energy. More handles must save energy, unless
   /// the faces show them.
   bool isBetter(const Outcome& mesh, const Outcome& than) {
-    constexpr std::size_t few_of = 1000;
+    constexpr double few_points = 0.001;
     if (mesh.intersecting() != than.intersecting())
       return mesh.intersecting() < than.intersecting();
     if (mesh.genus < than.genus)
       return !isBetter(than, mesh);
     if (mesh.genus == than.genus)
       return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
-    const std::size_t few = graph_.size() / few_of;
+    const std::size_t few = fractionOf(few_points, graph_.size());
     if (mesh.left_out > than.left_out + few || than.left_out > mesh.left_out + few)
       return mesh.left_out < than.left_out;
     if (saveHandles())
@@ -248,9 +248,8 @@ private:
   // --- 3. All openings open
 
   bool mayOpenAll() {
-    // So many triangles of one are a tangle.
-    constexpr std::size_t tangle_of = 1000;
-    return (best_->intersecting() > 0 || tangle_of * best_->left_out > 2 * graph_.size()) &&
+    constexpr double few = 0.002;
+    return (best_->intersecting() > 0 || best_->left_out > fractionOf(few, graph_.size())) &&
            removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
            plan_.openings().fillsPossible();
   }

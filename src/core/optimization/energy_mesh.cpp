@@ -201,7 +201,7 @@ IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report) {
   Indexed<Index> surface;
   for (Index t = 0; t < mesh.mesh().size(); ++t)
-    if (!mesh.facet(t).isOpen())
+    if (!mesh.facet(t).is_open)
       surface.push_back(t);
   const Triangles triangles = mesh.mesh().triangles()(Eigen::all, surface);
   Execution execution;

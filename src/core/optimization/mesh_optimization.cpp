@@ -1,6 +1,5 @@
 #include "mesh_optimization.h"
 
-#include "open_mesh.h"
 #include "optimization_constants.h"
 #include "parallel.h"
 #include "sampling_analysis.h"
@@ -139,13 +138,13 @@ std::vector<std::array<Index, 2>> foldedEdges(const EnergyMesh& of) {
 bool unfold(Workbench& bench) {
   auto folded = foldedEdges(bench.mesh);
   for (int round = 0; round < tuned::kMaxUnfoldingRounds && !folded.empty() &&
-                      bench.mayRepair(tuned::kUnfoldingDivisor);
+                      bench.mayRepair(tuned::kUnfoldingWork);
        ++round) {
     for (std::size_t i = 0; i < folded.size(); ++i) {
       bench.reportItem(i, folded.size(), 16);
       const auto& [v, w] = folded[i];
       for (std::size_t size = tuned::kMinRuin; size <= 8 * tuned::kMinRuin; size *= 2)
-        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingDivisor))
+        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingWork))
           bench.tryPart({v, w}, size, isGain);
     }
     folded = foldedEdges(bench.mesh);

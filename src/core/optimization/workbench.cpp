@@ -39,8 +39,8 @@ bool Workbench::isOutOfTime() {
   return log.is_out_of_time;
 }
 
-bool Workbench::mayRepair(std::size_t divisor) {
-  return work() < first_work_ + max_work_ / divisor && !isOutOfTime();
+bool Workbench::mayRepair(double fraction) {
+  return work() < first_work_ + fractionOf(fraction, max_work_) && !isOutOfTime();
 }
 
 void Workbench::renewWork() {

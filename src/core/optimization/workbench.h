@@ -40,8 +40,8 @@ public:
   bool isOutOfTime();
   /// Whether even the first flips have to end.
   bool isOverdue() const { return time_left_(-kGrace) == 0.0; }
-  /// Whether time is left for repairs, and some of their work divided by a number.
-  bool mayRepair(std::size_t divisor = 1);
+  /// Whether time is left for repairs, and some of a fraction of their work.
+  bool mayRepair(double fraction = 1.0);
   /// Allows as much work again as at the beginning.
   void renewWork();
   /// Ruins and recreates a part around some vertices, if work is left. Returns whether it was

@@ -53,16 +53,12 @@ const Candidate* leastCrossing(const std::vector<Candidate>& candidates, const C
   return best;
 }
 
-bool isOver(const OpenPlaces& openings, const std::array<Index, 3>& corners) {
-  return openings.isOpen(corners[0], corners[1], corners[2]);
-}
-
 class Opener {
 public:
   Opener(const Positions& points, const OpenPlaces& openings, SphereMesh& mesh)
       : points_(points), mesh_(mesh), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
-      mesh_.setOpen(t, isOver(openings, mesh_.vertices(t)));
+      mesh_.setOpen(t, openings.isOpen(mesh_.vertices(t)));
     for (const Index t : trianglesWithoutLoop(mesh_, openings))
       mesh_.setOpen(t, false);
   }
@@ -263,30 +259,6 @@ private:
 };
 
 }  // namespace
-
-std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
-  const auto is_open = [&](Index t) { return isOver(openings, mesh.vertices(t)); };
-  std::vector<Index> found;
-  IndexSet seen(mesh.slotCount());
-  for (Index first = 0; first < mesh.size(); ++first) {
-    if (!is_open(first) || !seen.insert(first))
-      continue;
-    std::vector<Index> piece{first};
-    bool has_loop = false;
-    for (std::size_t head = 0; head < piece.size(); ++head)
-      for (int k = 0; k < 3; ++k) {
-        const Index t = piece[head];
-        const Index next = mesh.neighbor(t, k);
-        const auto [v, w] = mesh.side(t, k);
-        has_loop = has_loop || openings.isRim(v, w);
-        if (is_open(next) && seen.insert(next))
-          piece.push_back(next);
-      }
-    if (!has_loop)
-      found.insert(found.end(), piece.begin(), piece.end());
-  }
-  return found;
-}
 
 void openMesh(const Positions& points, const OpenPlaces& openings, SphereMesh& mesh) {
   Opener(points, openings, mesh).run();

@@ -8,9 +8,6 @@
 
 namespace spherical_param::internal {
 
-/// Open triangles that others do not connect to a loop: they are part of the surface.
-std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);
-
 /// Decides which triangles of a closed mesh are over openings, so that the others are a manifold
 /// with boundary over all vertices. Connected open triangles count if they are next to a loop. A
 /// vertex without triangles gets a triangle with an edge of the boundary, or is put into a triangle
