@@ -38,6 +38,12 @@ struct Outcome {
   std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
 };
 
+/// A closed mesh before the optimisation.
+struct Start {
+  SphereMesh mesh;
+  std::optional<double> energy;  ///< after flips, which are the first step of the optimisation
+};
+
 /// The ways to mesh a part: the rows of a table, in the order in which they are tried.
 class Attempts {
 public:
@@ -68,7 +74,7 @@ public:
         best_ = std::move(next);
     }
     best_->part.graph_genus = best_->genus;
-    if (options_.handles == HandleMode::None && hasSureHandles())
+    if (options_.handles == HandleMode::None && clock_.hasTimeAgain() && hasSureHandles())
       best_->part.graph_genus = facesGenus();
     takeSphere();
     return std::move(*best_);
@@ -106,7 +112,8 @@ private:
   // --- 1. The faces of the graph
 
   bool mayUseFaces() {
-    return (removesIntersections(options_) || mayHaveHandles()) && plan_.faces() != nullptr;
+    return (removesIntersections(options_) || mayHaveHandles()) && !isGiven(options_) &&
+           plan_.faces() != nullptr;
   }
 
   /// The triangles that are in no face of the graph, without those over openings, as a fraction.
@@ -129,7 +136,8 @@ private:
 
   bool saveHandles() {
     if (!save_handles_)
-      save_handles_ = facesGenus() > 0 && kSureGain * facesEnergy() < flippedEnergy(sphere());
+      save_handles_ =
+          facesGenus() > 0 && kSureGain * flippedEnergy(faces()) < flippedEnergy(sphere());
     return *save_handles_;
   }
 
@@ -139,17 +147,17 @@ private:
     return facesGenus() > 0 && defects() <= max_defects && saveHandles();
   }
 
-  SphereMesh allFaces(const SphereMesh& faces) const {
-    SphereMesh mesh = withAllNodes(points_, graph_, faces);
+  Start startOf(const SphereMesh& faces) const {
+    Start start{withAllNodes(points_, graph_, faces), {}};
     Embedding none;
-    orientOutward(points_, mesh, none);
-    return mesh;
+    orientOutward(points_, start.mesh, none);
+    return start;
   }
 
-  double facesEnergy() {
-    if (!faces_energy_)
-      faces_energy_ = flippedEnergy(allFaces(*plan_.faces()));
-    return *faces_energy_;
+  Start& faces() {
+    if (!faces_)
+      faces_ = startOf(*plan_.faces());
+    return *faces_;
   }
 
   /// Whether a mesh of some energy after flips may be better than the best one.
@@ -167,12 +175,12 @@ private:
     constexpr double max_defects = 0.05;
     if (isSound() && (facesGenus() <= best_->genus || defects() > max_defects))
       return false;
-    return mayHelp(facesEnergy(), facesGenus());
+    return mayHelp(flippedEnergy(faces()), facesGenus());
   }
 
   std::optional<Outcome> meshFaces() {
     are_faces_tried_ = true;
-    return finished(allFaces(*plan_.faces()), {});
+    return finished(faces().mesh, {});
   }
 
   bool areHandlesDoubtful() {
@@ -184,10 +192,10 @@ private:
     const std::optional<SphereMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
     if (!faces)
       return std::nullopt;
-    SphereMesh mesh = allFaces(*faces);
-    if (saveHandles() && !mayHelp(flippedEnergy(mesh), 0))
+    Start start = startOf(*faces);
+    if (saveHandles() && !mayHelp(flippedEnergy(start), 0))
       return std::nullopt;
-    return finished(std::move(mesh), {});
+    return finished(std::move(start.mesh), {});
   }
 
   // --- 2. The sphere
@@ -208,13 +216,14 @@ private:
     }
   }
 
-  const SphereMesh& sphere() {
+  Start& sphere() {
     if (!sphere_) {
       embedding_ = embeddingOf();
       clock_.begin("triangulation");
-      sphere_.emplace(triangulateSphere(embedding_.directions, clock_.execution()), graph_.size(),
+      SphereMesh mesh(triangulateSphere(embedding_.directions, clock_.execution()), graph_.size(),
                       clock_.execution().threads);
-      orientOutward(points_, *sphere_, embedding_);
+      orientOutward(points_, mesh, embedding_);
+      sphere_ = Start{std::move(mesh), {}};
     }
     return *sphere_;
   }
@@ -241,7 +250,7 @@ private:
   }
 
   std::optional<Outcome> meshSphere() {
-    const SphereMesh& mesh = sphere();
+    const SphereMesh& mesh = sphere().mesh;
     return finished(mesh, embedding_);
   }
 
@@ -282,11 +291,15 @@ private:
 
   // --- What all of them need
 
-  double flippedEnergy(const SphereMesh& mesh) {
-    const Execution execution = clock_.limited();
-    clock_.begin("optimization");
-    return energyOf(flipMesh(points_, mesh, graph_,
-                             {plan_.openings().places(), false, options_.seed}, execution));
+  double flippedEnergy(Start& start) {
+    if (!start.energy) {
+      const Execution execution = clock_.limited();
+      clock_.begin("optimization");
+      start.mesh = flipMesh(points_, std::move(start.mesh), graph_,
+                            {plan_.openings().places(), false, options_.seed}, execution);
+      start.energy = energyOf(start.mesh);
+    }
+    return *start.energy;
   }
 
   double energyOf(SphereMesh mesh) const {
@@ -316,8 +329,8 @@ private:
   std::optional<Outcome> best_;
   bool are_faces_tried_ = false;
   std::optional<bool> save_handles_;
-  std::optional<double> faces_energy_;  ///< after flips
-  std::optional<SphereMesh> sphere_;
+  std::optional<Start> faces_;
+  std::optional<Start> sphere_;
   Embedding embedding_;
 };
 
