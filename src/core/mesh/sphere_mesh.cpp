@@ -181,9 +181,12 @@ std::size_t SphereMesh::surfaceCount() const {
 }
 
 std::size_t SphereMesh::surfaceVertexCount() const {
-  std::vector<Index> vertices = verticesOf(surface());
-  sortUnique(vertices);
-  return vertices.size();
+  Indexed<char> is_used(degree_.size(), 0);
+  for (Index t = 0; t < size(); ++t)
+    if (isUsed(t) && !isOpen(t))
+      for (const Index v : vertices(t))
+        is_used[v] = 1;
+  return static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), char{1}));
 }
 
 std::size_t SphereMesh::genus() const {

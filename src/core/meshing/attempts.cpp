@@ -32,8 +32,8 @@ constexpr double kMinGain = 0.05;
 struct Outcome {
   PartMesh part;
   std::size_t genus = 0;
-  std::size_t left_out = 0;  ///< points and triangles
-  double energy = 0.0;
+  std::size_t left_out = 0;      ///< points and triangles
+  std::optional<double> energy;  ///< if it was asked for
 
   std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
 };
@@ -93,20 +93,20 @@ private:
 
   /// Fewer intersections, then more points, then less energy. More handles must save energy, unless
   /// the faces show them.
-  bool isBetter(const Outcome& mesh, const Outcome& than) {
+  bool isBetter(Outcome& mesh, Outcome& than) {
     constexpr double few_points = 0.001;
     if (mesh.intersecting() != than.intersecting())
       return mesh.intersecting() < than.intersecting();
     if (mesh.genus < than.genus)
       return !isBetter(than, mesh);
     if (mesh.genus == than.genus)
-      return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
+      return std::pair(mesh.left_out, energyOf(mesh)) < std::pair(than.left_out, energyOf(than));
     const std::size_t few = fractionOf(few_points, graph_.size());
     if (mesh.left_out > than.left_out + few || than.left_out > mesh.left_out + few)
       return mesh.left_out < than.left_out;
     if (saveHandles())
-      return (1.0 - kMinGain) * mesh.energy < than.energy;
-    return mesh.left_out <= than.left_out && mesh.energy < (1.0 - kMinGain) * than.energy;
+      return (1.0 - kMinGain) * energyOf(mesh) < energyOf(than);
+    return mesh.left_out <= than.left_out && energyOf(mesh) < (1.0 - kMinGain) * energyOf(than);
   }
 
   // --- 1. The faces of the graph
@@ -161,11 +161,11 @@ private:
   }
 
   /// Whether a mesh of some energy after flips may be better than the best one.
-  bool mayHelp(double energy, std::size_t genus) const {
+  bool mayHelp(double energy, std::size_t genus) {
     // The optimisation hardly lowers the energy of a mesh that becomes sound.
     constexpr double max_energy = 1.05;
     const double most = genus == best_->genus ? max_energy : 1.0 - kMinGain;
-    return best_->intersecting() > 0 || energy < most * best_->energy;
+    return best_->intersecting() > 0 || energy < most * energyOf(*best_);
   }
 
   bool mayFacesHelp() {
@@ -306,6 +306,12 @@ private:
     return EnergyMesh(points_, std::move(mesh), graph_, 1, plan_.openings().places()).energy();
   }
 
+  double energyOf(Outcome& outcome) const {
+    if (!outcome.energy)  // without the slots of vertices that were taken out
+      outcome.energy = energyOf(SphereMesh(outcome.part.mesh.triangles(), graph_.size()));
+    return *outcome.energy;
+  }
+
   Outcome finished(SphereMesh mesh, Embedding embedding) {
     Outcome outcome;
     outcome.genus = mesh.genus();
@@ -316,8 +322,6 @@ private:
     const SphereMesh& finished = outcome.part.mesh;
     outcome.left_out =
         graph_.size() - finished.surfaceVertexCount() + outcome.part.left_out_triangles;
-    // Without the slots of vertices that were taken out.
-    outcome.energy = energyOf(SphereMesh(finished.triangles(), graph_.size()));
     return outcome;
   }
 
