@@ -469,8 +469,7 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
               polygons.front().vertices.front());
     EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles, trianglesOf(meshed(small)));
-    EXPECT_EQ(reconstruction.getDiagnosis(1).triangle_marks,
-              std::vector<std::uint8_t>(396, 0));
+    EXPECT_EQ(reconstruction.getDiagnosis(1).triangle_marks, std::vector<std::uint8_t>(396, 0));
     const auto sphere = reconstruction.getSphereCoordinates();
     EXPECT_TRUE(sphere->is_dense);
     for (const PointXYZ& point : *sphere)
