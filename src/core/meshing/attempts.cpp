@@ -73,9 +73,8 @@ public:
       if (next && (!best_ || isBetter(*next, *best_)))
         best_ = std::move(next);
     }
-    best_->part.graph_genus = best_->genus;
     if (options_.handles == HandleMode::None && clock_.hasTimeAgain() && hasSureHandles())
-      best_->part.graph_genus = facesGenus();
+      best_->part.cut_handles = facesGenus();
     takeSphere();
     return std::move(*best_);
   }

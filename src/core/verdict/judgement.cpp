@@ -57,7 +57,7 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
   Surface result = judge(std::move(finished), std::move(diagnosis), options);
   reportFraction(report, 0.8);
   result.left_out_triangles = mesh.left_out_triangles;
-  result.diagnosis.cut_handles = mesh.graph_genus - std::min(mesh.graph_genus, result.genus());
+  result.diagnosis.cut_handles = mesh.cut_handles;
   result.has_certain_triangles_only = mesh.has_certain_triangles_only;
   for (const StrayPoint& stray : graph.stray_points)
     result.outliers.push_back(stray.point);
