@@ -1,5 +1,5 @@
 #include "open_shapes.h"
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 #include "spherical_param/mesh_measures.h"
 
 namespace spherical_param::test {

@@ -1,6 +1,6 @@
 #include "stage_clock.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 
 #include <chrono>
 
