@@ -116,18 +116,5 @@ TEST(Judgement, SmoothingMovesThePointsAlone) {
   EXPECT_LT(deviation(result.points), 0.5 * deviation(vertices));
 }
 
-TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
-  const Positions points = noisySphere(400, 0.6);
-  const Surface rough = mesh(points);
-  expectGuarantees(points, rough);
-  EXPECT_TRUE(rough.is_noisy);
-  EXPECT_TRUE(isFound(rough, "nois"));
-  const Surface result = mesh(points, given("smoothing", 5));
-  expectGuarantees(points, result);
-  EXPECT_FALSE(isFound(result, "nois"));
-  EXPECT_EQ(result.intersecting_triangles, 0U);
-  EXPECT_NEAR(result.smoothing->volume_after, 4.0 / 3.0 * kPi, 0.3);
-}
-
 }  // namespace
 }  // namespace spherical_param::test
