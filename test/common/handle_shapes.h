@@ -100,6 +100,17 @@ inline Positions plateWithHoles(double spacing) {
       {4.5, 3.3, 1.1}, spacing);
 }
 
+/// A wheel of twelve teeth with a hole in the middle: genus 1, with sharp edges.
+inline Positions gear(double spacing) {
+  return netOf(
+      [](const Eigen::Vector3d& p) {
+        const double r = p.head<2>().norm();
+        const double tooth = std::clamp(2.0 * std::cos(12.0 * std::atan2(p.y(), p.x())), -0.5, 0.5);
+        return std::max({std::abs(p.z()) - 0.25, r - 1.0 - 0.12 * tooth, 0.4 - r});
+      },
+      {2.4, 2.4, 0.8}, spacing);
+}
+
 /// A tube along a trefoil: genus 1, knotted.
 inline Positions trefoil(double spacing) {
   const auto curve = [](double t) {

@@ -45,6 +45,18 @@ inline bool hasCutNode(const Graph& graph) {
                      [&](Index i) { return countReachable(graph, i) < n - 1; });
 }
 
+/// Points with a tangent plane but without a certified cell.
+inline Index countUncertified(const Stars& stars) {
+  return static_cast<Index>(
+      std::count_if(stars.of_node.begin(), stars.of_node.end(),
+                    [](const auto& star) { return star.tangent_plane && star.wants_more; }));
+}
+
+inline Index countWithoutPlane(const Stars& stars) {
+  return static_cast<Index>(std::count_if(stars.of_node.begin(), stars.of_node.end(),
+                                          [](const auto& star) { return !star.tangent_plane; }));
+}
+
 /// What every neighbour graph must be: connected, symmetric, in sorted rows, with distances.
 inline void expectConnectedGraphOf(const Positions& points, const NeighborGraph& result) {
   const Graph& graph = result.graph;

@@ -1,6 +1,5 @@
 #include "graph_building.h"
 
-#include "component_tree.h"
 #include "graph_helpers.h"
 
 namespace spherical_param::test {
@@ -63,13 +62,6 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
     ASSERT_EQ(bridges.size(), 3U);
     expectClosestPairs(points, bridges, is_inner, {1});
   }
-}
-
-TEST(GraphBuilding, OfEquallyLongPairsThatOfLowerIndicesIsFound) {
-  ComponentTree::Pair pair{1.0, 1, 2};
-  ComponentTree(Positions{{0, 1, -1}, {0, 0, 0}, {0, 0, 0}}).findNearest(0, {}, pair);
-  EXPECT_EQ(pair.from, 0);
-  EXPECT_EQ(pair.to, 1);
 }
 
 TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {

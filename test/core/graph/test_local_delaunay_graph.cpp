@@ -1,8 +1,6 @@
-#include "graphs.h"
+#include "local_delaunay_graph.h"
 
 #include "graph_helpers.h"
-
-#include <Eigen/Eigenvalues>
 
 namespace spherical_param::test {
 namespace {
@@ -10,18 +8,6 @@ namespace {
 /// From the k nearest, and more where they are wanted.
 NeighborGraph build(const Positions& points, int k = 12) {
   return graphOf(points, bruteForceNeighbors(points, k), bruteForceSearch(points));
-}
-
-/// Points with a tangent plane but without a certified cell.
-Index countUncertified(const Stars& stars) {
-  return static_cast<Index>(
-      std::count_if(stars.of_node.begin(), stars.of_node.end(),
-                    [](const auto& star) { return star.tangent_plane && star.wants_more; }));
-}
-
-Index countWithoutPlane(const Stars& stars) {
-  return static_cast<Index>(std::count_if(stars.of_node.begin(), stars.of_node.end(),
-                                          [](const auto& star) { return !star.tangent_plane; }));
 }
 
 Stars starsOf(const Positions& points, int k = 12) {
@@ -35,54 +21,6 @@ void expectSound(const Positions& points, const NeighborGraph& result) {
     EXPECT_GE(rowOf(result.graph, i).size(), 3U);
 }
 
-struct Star {
-  std::set<Index> nodes;
-  double squared_radius = 0.0;  ///< of the cell
-};
-
-/// Voronoi neighbours of point i among a list of others, in the plane of its ten nearest, from the
-/// definition: on the bisector there is a piece that is nearer to no other site. The cell ends at
-/// the reach of the list.
-Star bruteForceStar(const Positions& points, Index i, const std::vector<Index>& list) {
-  Positions offsets = points(Eigen::all, list).colwise() - points.col(i);
-  Positions nearest = offsets.leftCols(10);
-  nearest.colwise() -= Eigen::Vector3d(nearest.rowwise().mean());
-  const Eigen::Matrix3d axes =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(nearest * nearest.transpose()).eigenvectors();
-  const double reach = offsets.colwise().norm().maxCoeff();
-  std::vector<std::pair<Index, Eigen::Vector2d>> sites{{-1, {2.0 * reach, 0.0}},
-                                                       {-1, {-2.0 * reach, 0.0}},
-                                                       {-1, {0.0, 2.0 * reach}},
-                                                       {-1, {0.0, -2.0 * reach}}};
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Eigen::Vector3d local = axes.transpose() * offsets.col(static_cast<Eigen::Index>(k));
-    if (std::abs(local[0]) <= 0.85 * local.norm())
-      sites.emplace_back(list[k], local.tail<2>().normalized() * local.norm());
-  }
-  Star star;
-  for (const auto& [j, site] : sites) {
-    const Eigen::Vector2d along(-site.y(), site.x());
-    double low = -1e300;
-    double high = 1e300;
-    for (const auto& [k, other] : sites) {
-      // (site / 2 + t along) . other <= other^2 / 2
-      const double slope = along.dot(other);
-      const double room = 0.5 * other.squaredNorm() - 0.5 * site.dot(other);
-      if (slope > 0.0)
-        high = std::min(high, room / slope);
-      else if (slope < 0.0)
-        low = std::max(low, room / slope);
-    }
-    if (low >= high)
-      continue;
-    if (j >= 0)
-      star.nodes.insert(j);
-    for (const double t : {low, high})
-      star.squared_radius = std::max(star.squared_radius, (0.25 + t * t) * site.squaredNorm());
-  }
-  return star;
-}
-
 TEST(LocalDelaunayGraph, JoinsThePairsOfWhichBothStarsAgree) {
   // A surface, and one with a rim, whose cells are not bounded.
   Positions dome = randomSphere(200, 1);
@@ -90,9 +28,9 @@ TEST(LocalDelaunayGraph, JoinsThePairsOfWhichBothStarsAgree) {
   for (const Positions& points : {randomSphere(150, 1), dome}) {
     Edges one;
     Edges both;
-    const NeighborLists lists = bruteForceNeighbors(points, 32);
-    for (Index i = 0; i < points.cols(); ++i)
-      for (const Index j : bruteForceStar(points, i, rowOf(lists, i)).nodes) {
+    const Stars stars = starsOf(points);
+    for (const Index i : indicesOf(stars))
+      for (const Index j : stars.of(i)) {
         if (one.count({j, i}) > 0)
           both.insert({std::pair(i, j), std::pair(j, i)});
         one.insert({i, j});
@@ -102,37 +40,7 @@ TEST(LocalDelaunayGraph, JoinsThePairsOfWhichBothStarsAgree) {
     expectSound(points, result);
     EXPECT_EQ(edgesOf(result.graph), both);
     EXPECT_TRUE(result.bridges.empty());
-    EXPECT_EQ(countUncertified(starsOf(points)) > 0, points.cols() == 200);
-    EXPECT_EQ(countWithoutPlane(starsOf(points)), 0);
   }
-}
-
-TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified) {
-  const Positions points = randomSphere(150, 2);
-  const auto uncertified = [&](int k) {
-    const NeighborLists lists = bruteForceNeighbors(points, k);
-    std::vector<Index> result;
-    for (Index i = 0; i < points.cols(); ++i) {
-      const std::vector<Index> list = rowOf(lists, i);
-      const double squared_reach = (points.col(list.back()) - points.col(i)).squaredNorm();
-      if (4.0 * bruteForceStar(points, i, list).squared_radius > squared_reach)
-        result.push_back(i);
-    }
-    return result;
-  };
-  std::vector<std::pair<std::vector<Index>, int>> asked;
-  const Stars stars = test::starsOf(points, bruteForceNeighbors(points, 12),
-                                    [&](const std::vector<Index>& some, int count) {
-                                      asked.emplace_back(some, count);
-                                      return bruteForceSearch(points)(some, count);
-                                    });
-  std::vector<std::pair<std::vector<Index>, int>> expected;
-  for (const auto& [known, count] : {std::pair(12, 24), std::pair(24, 32)})
-    if (!uncertified(known).empty())
-      expected.emplace_back(uncertified(known), count);
-  ASSERT_FALSE(expected.empty());
-  EXPECT_EQ(asked, expected);
-  EXPECT_EQ(countUncertified(stars), static_cast<Index>(uncertified(32).size()));
 }
 
 TEST(LocalDelaunayGraph, UpTo32NeighboursAreUsedHoweverTheyCome) {

@@ -2,7 +2,6 @@
 
 #include "core/embedding/embeddings.h"
 #include "core/graph/graph_helpers.h"
-#include "qhull.h"
 #include "union_find.h"
 
 #include <tuple>
@@ -154,19 +153,6 @@ TEST(PaperEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
   EXPECT_EQ(result.report.stop_reason, StopReason::Converged);
   EXPECT_LE(meanTangentialLaplacian(graph, result.directions, options.weights), 1.01e-10);
   EXPECT_LT(result.report.iterations, 20000);
-}
-
-TEST(PaperHull, IsThatOfQhullOrWhereItLeavesPointsOutTheExactOne) {
-  const Positions sphere = randomSphere(200, 1);
-  const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
-  const Positions crowded = horizontally(sphere, cap(400, 1e-8, pole, 2));
-  EXPECT_EQ(hullByQhull(sphere).cols(), 396);
-  ASSERT_EQ(hullByQhull(crowded).cols(), 0) << "this cap does not put qhull to the test";
-  for (const Positions& points : {sphere, crowded, horizontally(sphere, sphere)}) {
-    const Triangles hull = internal::paper::convexHull(points, {});
-    EXPECT_TRUE(isSphereOverAll(hull, static_cast<Index>(points.cols())));
-    EXPECT_EQ(canonical(hull), canonical(triangulateSphere(points)));
-  }
 }
 
 }  // namespace

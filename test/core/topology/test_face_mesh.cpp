@@ -9,9 +9,15 @@
 namespace spherical_param::test {
 namespace {
 
-/// The mesh of the faces of a graph, and of the other nodes.
-std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std::size_t genus) {
-  const auto faces = meshFaces(points, graph, genus, {});
+std::optional<FaceMesh> facesOf(const Positions& points, const Graph& graph) {
+  return meshFaces(points, graph, RotationSystem(points, graph, nodeSpacings(graph, 1), 1));
+}
+
+/// The mesh of the faces of a graph without handles, and of the other nodes.
+std::optional<Triangles> meshOf(const Positions& points, const Graph& graph) {
+  std::optional<FaceMesh> faces = facesOf(points, graph);
+  if (faces && faces->genus > 0)
+    faces = withoutHandles(points, graph, *std::move(faces));
   if (!faces)
     return std::nullopt;
   return withAllNodes(points, graph, faces->triangles);
@@ -36,11 +42,15 @@ std::size_t countLost(const Triangles& before, const Triangles& after) {
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   const Positions torus = torusCloud(40, 16, 1.0, 0.4);
   const Graph graph = localDelaunayGraph(torus).graph;
-  const auto cut = meshOf(torus, graph, 0);
+  const auto whole = facesOf(torus, graph);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->genus, 1U);
+  EXPECT_TRUE(isSurfaceOverAll(whole->triangles, static_cast<Index>(torus.cols()), 1));
+  const auto cut = meshOf(torus, graph);
   ASSERT_TRUE(cut);
   EXPECT_TRUE(isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
   // It is cut across the tube, of 16 points, or along it, of 40.
-  EXPECT_LE(countLost(*meshOf(torus, graph, 1), *cut), 4U * 40U);
+  EXPECT_LE(countLost(whole->triangles, *cut), 4U * 40U);
 }
 
 TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
@@ -49,7 +59,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   Positions thin = sphere;
   thin.row(2) *= 0.1;
   const Graph graph = localDelaunayGraph(thin).graph;
-  const auto right = meshOf(thin, graph, 0);
+  const auto right = meshOf(thin, graph);
   ASSERT_TRUE(right);
   std::vector<Bridge> bridges;
   for (Index v = 0; v < 1500; v += 100)
@@ -59,7 +69,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
         bridges.push_back({v, w, distance});
     }
   ASSERT_GT(bridges.size(), 20U);
-  const auto mesh = meshOf(thin, withEdges(graph, bridges), 0);
+  const auto mesh = meshOf(thin, withEdges(graph, bridges));
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 1500));
   EXPECT_LT(countLost(*right, *mesh), 450U);  // of 4,494
@@ -70,7 +80,7 @@ TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
   const Positions points =
       horizontally(spiralSphere(300), movedTo(2.5, spiralSphere(300)),
                    pointsAt(5, [](Index i) { return Eigen::Vector3d(0.0, 1.2 + 0.2 * i, 0.0); }));
-  const auto mesh = meshOf(points, localDelaunayGraph(points).graph, 0);
+  const auto mesh = meshOf(points, localDelaunayGraph(points).graph);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, 605));
 }
@@ -90,7 +100,7 @@ TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
     if (i > 0)
       bridges.push_back({0, i * n, 3.0 * i});
   }
-  const auto mesh = meshOf(points, withEdges(graphOfMesh(points, triangles), bridges), 0);
+  const auto mesh = meshOf(points, withEdges(graphOfMesh(points, triangles), bridges));
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, spheres * n));
 }
@@ -98,7 +108,7 @@ TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
 TEST(FaceMesh, SaysWhatIsNoFace) {
   // The loop of 20 points and more around a hole is no face.
   const Positions points = sphereWithHoles(1000, 1, 0.4);
-  const auto mesh = meshFaces(points, localDelaunayGraph(points).graph, 0, {});
+  const auto mesh = facesOf(points, localDelaunayGraph(points).graph);
   ASSERT_TRUE(mesh);
   ASSERT_EQ(mesh->is_filling.size(), columnCount(mesh->triangles));
   Index fillings = 0;
@@ -113,7 +123,7 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
 
 TEST(FaceMesh, IsNoneWithoutFaces) {
   const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(20, 0.0, 19.0);
-  EXPECT_FALSE(meshOf(line, localDelaunayGraph(line).graph, 0));
+  EXPECT_FALSE(meshOf(line, localDelaunayGraph(line).graph));
 }
 
 TEST(FaceMesh, IsNoneOfOneTriangle) {
@@ -124,7 +134,7 @@ TEST(FaceMesh, IsNoneOfOneTriangle) {
   triangle << 0, 1, 2;
   const Graph graph = withEdges(graphOfMesh(points, triangle), {{1, 3, edgeLength(points, 1, 3)},
                                                                 {3, 4, edgeLength(points, 3, 4)}});
-  EXPECT_FALSE(meshFaces(points, graph, 0, {}));
+  EXPECT_FALSE(facesOf(points, graph));
 }
 
 }  // namespace

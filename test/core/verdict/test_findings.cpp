@@ -105,9 +105,12 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
          r.smoothing.emplace();
        }},
       {{"1 handle, cut: the mesh is a sphere", "", "", true},
-       [](Surface& r) { r.diagnosis.genus = 1; }},
-      {{"a possible handle (cut) or fold in 2 places", "", "", true},
-       [](Surface& r) { r.diagnosis.handles.resize(2); }},
+       [](Surface& r) { r.diagnosis.cut_handles = 1; }},
+      {{"2 more handles, cut", "", "", true},
+       [](Surface& r) {
+         r.topology.genus = 1;
+         r.diagnosis.cut_handles = 2;
+       }},
       {{"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true},
        [](Surface& r) { r.diagnosis.is_one_sided = true; }},
       {{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud", "", "",
@@ -117,6 +120,12 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
        [](Surface& r) { r.is_out_of_time = true; }},
       {{"self-intersections", "", "", true}, [](Surface& r) { r.intersecting_triangles = 2; }},
   });
+}
+
+TEST(Findings, AHandleThatAnOptionCutsNamesThatOption) {
+  expectFindings({{{"1 handle, cut: the mesh is a sphere", "handles", "auto", true},
+                   [](Surface& r) { r.diagnosis.cut_handles = 1; }}},
+                 given("handles", "none"));
 }
 
 TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
@@ -218,7 +227,7 @@ TEST(Verdict, SaysInProportionWhatIsWrong) {
          [](Surface& r) {
            addBridge(r, 1, 2);
            r.openings = {filledOpening(432)};
-           r.diagnosis.genus = 1;
+           r.diagnosis.cut_handles = 1;
          });
   expect("A sound mesh with 1 opening, but it is folded.", [](Surface& r) {
     r.boundary.resize(1);

@@ -1,7 +1,7 @@
 #include "open_surface.h"
 
+#include "core/reconstructions.h"
 #include "handle_shapes.h"
-#include "reconstructions.h"
 
 namespace spherical_param::test {
 namespace {
@@ -45,7 +45,6 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
     EXPECT_FALSE(result.isClosed());
     EXPECT_TRUE(result.is_noisy);
     EXPECT_EQ(result.smoothing.has_value(), smoothing > 0);
-    EXPECT_EQ(result.points.cols(), result.sphere.cols());
     EXPECT_EQ(result.self_intersections, findSelfIntersections(result.points, result.triangles));
   }
 }
@@ -148,17 +147,22 @@ TEST(OpenSurface, HolesAreFilledUpToASize) {
   test::expectSound(filled("fill_holes_area", 10.0), 0, 0);
 }
 
-TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
+TEST(OpenSurface, WithAHandleIsSaidToBeNone) {
   const Positions holed = pointsWhere(torusCloud(80, 30, 2.5, 1.0), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
-  const Options options = given(leftOpen(), "handles", "none");
-  for (const Positions& points : {holed, moebiusBand(160, 12)}) {
-    const Surface result = surfaceOf(points, options);
+  const Surface result = surfaceOf(holed, given(leftOpen(), "handles", "none"));
+  EXPECT_TRUE(result.topology.manifold());
+  EXPECT_EQ(result.diagnosis.cut_handles, 1U);
+  EXPECT_TRUE(hasFault(result.findings));
+}
+
+TEST(OpenSurface, WithOneSideIsSaidToBeNone) {
+  for (const char* handles : {"none", "auto"}) {
+    const Surface result = surfaceOf(moebiusBand(160, 12), given(leftOpen(), "handles", handles));
     EXPECT_TRUE(result.topology.manifold());
-    EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
-    EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);
-    EXPECT_FALSE(result.findings.empty());
+    EXPECT_TRUE(result.diagnosis.is_one_sided);
+    EXPECT_TRUE(hasFault(result.findings));
   }
 }
 

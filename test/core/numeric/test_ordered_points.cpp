@@ -49,19 +49,5 @@ TEST(OrderedPoints, AreTheDistinctPointsAlongTheCurve) {
   EXPECT_TRUE(orderPoints(Positions(3, 0), 1).input_of_node.empty());
 }
 
-TEST(OrderedPoints, AreOfExtentOneAtAnyScaleAndPlace) {
-  const Positions points = randomSphere(500, 4);
-  for (const double scale : {0x1p-1040, 1e-300, 1e-30, 1.0, 1e30, 1e100}) {
-    const Positions ordered = orderPoints(scale * points, 1).points;
-    const double extent = (ordered.rowwise().maxCoeff() - ordered.rowwise().minCoeff()).maxCoeff();
-    EXPECT_GE(extent, 1.0);
-    EXPECT_LT(extent, 2.0);
-  }
-  // An axis along which nothing differs may be so far away that it would not stay finite.
-  Positions far = 1e-300 * points;
-  far.row(1).setConstant(1e300);
-  EXPECT_TRUE(orderPoints(far, 1).points.allFinite());
-}
-
 }  // namespace
 }  // namespace spherical_param::test

@@ -20,15 +20,6 @@ TEST(Parts, AreTheSurfacesOfACloudTheLargestFirst) {
     EXPECT_EQ(findParts(points), (Parts{range(0, points.cols())}));
 }
 
-TEST(Parts, OfOneSizeAreInTheOrderOfTheirPoints) {
-  const Positions both = horizontally(movedTo(9.0, spiralSphere(200)), spiralSphere(200));
-  const Positions points = pointsAt(400, [&](Index i) { return both.col(i / 2 + i % 2 * 200); });
-  const Parts found = findParts(points);
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0][1], 2);
-  EXPECT_EQ(found[1][1], 3);
-}
-
 TEST(Parts, HaveMinPointsPositions) {
   const Positions points = horizontally(spiralSphere(300), movedTo(4.0, spiralSphere(40)));
   EXPECT_EQ(findParts(points), Parts{range(0, 300)});
@@ -122,12 +113,6 @@ TEST(StrayPoints, AreClustersNetsAndPointsBetweenSheets) {
   const Positions net = inBox(400, 1.5);
   expectStray(sphere, net);
   EXPECT_EQ(outliersOf(horizontally(sphere, net), OutlierMode::Deviation), range(20000, 20400));
-}
-
-TEST(StrayPoints, BelowTheThresholdOfTheDeviationStay) {
-  EXPECT_TRUE(outliersOf(horizontally(randomSphere(2000, 1), 1.5 * spiralSphere(6)),
-                         OutlierMode::Deviation, 1000.0)
-                  .empty());
 }
 
 TEST(StrayPoints, AreThoseALittleOffASurface) {

@@ -1,6 +1,6 @@
 #include "mesh_cleaning.h"
 
-#include "reconstructions.h"
+#include "core/reconstructions.h"
 #include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
@@ -10,29 +10,32 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   Positions points = spiralSphere(600);
   const Triangles triangles = triangulateSphere(points);
   points.col(200) *= -1.5;
-  MeshedCloud mesh;
-  mesh.optimization.triangles = triangles;
-  mesh.optimization.intersecting.pairs = findSelfIntersections(points, triangles);
-  ASSERT_FALSE(mesh.optimization.intersecting.pairs.empty());
-  const auto cleaned = [&](const Options& options, bool is_open = false) {
-    OpenMesh open{triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
-    const auto left_out = cleanMesh(points, is_open, withTopology(options), {}, mesh, open);
-    const Triangles surface = internal::surfaceOf(open);
-    EXPECT_EQ(findSelfIntersections(points, surface).empty(), left_out.has_value());
-    EXPECT_TRUE(left_out || surface == triangles);
-    return left_out;
+  PartMesh mesh;
+  mesh.mesh = {triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
+  mesh.intersecting.pairs = findSelfIntersections(points, triangles);
+  ASSERT_FALSE(mesh.intersecting.pairs.empty());
+  // How many triangles are left out if no others intersect.
+  const auto cleaned = [&](const Options& options) -> std::optional<std::size_t> {
+    PartMesh result = mesh;
+    cleanMesh(points, withTopology(options), {}, result);
+    const Triangles surface = internal::surfaceOf(result.mesh);
+    EXPECT_EQ(findSelfIntersections(points, surface), result.intersecting.pairs);
+    if (result.intersecting.pairs.empty())
+      return result.left_out_triangles;
+    EXPECT_EQ(surface, triangles);
+    return std::nullopt;
   };
   EXPECT_TRUE(cleaned({}));
   EXPECT_EQ(cleaned(given("surface", "closed")), 0U);
   EXPECT_FALSE(cleaned(given(paper(), "intersections", "remove")));
   EXPECT_FALSE(cleaned(given("intersections", "keep")));
-  // What the optimisation counted of an open mesh is not that of its surface.
-  const std::vector<std::array<Index, 2>> pairs =
-      std::exchange(mesh.optimization.intersecting.pairs, {});
-  EXPECT_TRUE(cleaned({}, true));
-  mesh.optimization.intersecting.pairs = pairs;
-  mesh.optimization.report.is_out_of_time = true;
+  mesh.optimization.is_out_of_time = true;
   EXPECT_FALSE(cleaned({}));
+  // What was counted before the points were smoothed is not what intersects now.
+  mesh.optimization.is_out_of_time = false;
+  mesh.smoothed.points = points;
+  mesh.intersecting = {};
+  EXPECT_TRUE(cleaned({}));
 }
 
 /// Random points of a plate whose two sides, which false edges join, are nearer to each other than

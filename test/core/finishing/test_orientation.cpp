@@ -1,12 +1,16 @@
+#include "orientation.h"
+
+#include "core/reconstructions.h"
 #include "open_shapes.h"
-#include "reconstructions.h"
 #include "spherical_param/mesh_measures.h"
 
 namespace spherical_param::test {
 namespace {
 
 Surface facing(const Positions& points, const CloudInfo& info) {
-  Surface surface = reconstruct(points, {}, {}, info).surface();
+  Options options;
+  options.details = true;
+  Surface surface = reconstruct(points, options, {}, info).surface();
   // The map has the side of the mesh.
   EXPECT_GT(volumeOf(surface.sphere, surface.triangles), 0.0);
   return surface;

@@ -1,7 +1,6 @@
 #include "embedding_history.h"
 
 #include "embeddings.h"
-#include "ordered_points.h"
 
 namespace spherical_param::test {
 namespace {
@@ -31,19 +30,6 @@ TEST(EmbeddingHistory, KeepsAtMostTheLimitAndEveryLevelFromTheStartToTheEnd) {
     EXPECT_EQ(frames.back().sphere, embedding.directions(Eigen::all, shown));
     EXPECT_TRUE(std::is_sorted(frames.begin(), frames.end(),
                                [](const auto& a, const auto& b) { return a.level > b.level; }));
-  }
-}
-
-TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
-  const Positions sphere = orderPoints(randomSphere(6000, 3), 1).points;
-  for (const Index vertices : {400, 900, 1500}) {
-    Setting options;
-    options.history_vertices = vertices;
-    const EmbeddingHistory history = EmbeddingRecorder(6000, options).take();
-    // No place of the sphere is further from the next node than some of their even distances.
-    const double even = std::sqrt(4.0 * kPi / static_cast<double>(history.vertices.size()));
-    const Eigen::MatrixXd cosines = sphere.transpose() * sphere(Eigen::all, history.vertices);
-    EXPECT_GT(cosines.rowwise().maxCoeff().minCoeff(), 1.0 - 0.5 * std::pow(2.5 * even, 2));
   }
 }
 

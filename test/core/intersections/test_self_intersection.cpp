@@ -15,57 +15,6 @@ Pairs pairsOf(const Mesh& mesh) {
   return findSelfIntersections(mesh.points, mesh.triangles, Execution{1});
 }
 
-/// Whether two triangles, given by their corners, intersect.
-bool meet(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
-  Mesh mesh{horizontally(positionsOf(a), positionsOf(b)), Triangles{{0, 3}, {1, 4}, {2, 5}}};
-  const bool result = !pairsOf(mesh).empty();
-  // The same if they share the numbers of the vertices that are equal.
-  for (Index i = 0; i < 3; ++i)
-    for (Index j = 0; j < 3; ++j)
-      if (mesh.points.col(i) == mesh.points.col(3 + j))
-        mesh.triangles(j, 1) = i;
-  EXPECT_EQ(!pairsOf(mesh).empty(), result);
-  return result;
-}
-
-// A corner on a grid of neighbouring doubles around the plane z = x + y, tilted so that no product
-// is exact: plain evaluation mistakes most of the grid.
-TEST(SelfIntersection, NeighbouringDoublesAreDistinguished) {
-  const double step = std::ldexp(1.0, -52);
-  const Eigen::Vector3d a(13, 1, 14);
-  const Eigen::Vector3d b(1, 13, 14);
-  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 12; ++i)
-    for (int j = 0; j < 12; ++j)
-      for (int k = 0; k < 24; ++k) {
-        const Eigen::Vector3d p(0.5 + i * step, 0.25 + j * step, 0.75 + k * step);
-        ASSERT_EQ(meet({a, b, zero}, {b, a, p}), k == i + j);  // folded
-        ASSERT_EQ(meet({a, b, zero}, {p, {1, 1, 20}, {2, 1, 20}}), k <= i + j);
-        ASSERT_EQ(meet({a, b, zero}, {a, p, {12, 1, 20}}), k <= i + j);
-      }
-}
-
-// A triangle that touches another one besides their common vertex, or without one, and a direction
-// between the two that is normal to where they touch: rounded off, it seems to separate them.
-TEST(SelfIntersection, RoundingSeparatesNothing) {
-  std::mt19937_64 random(3);
-  std::uniform_int_distribution<int> coordinate(-10000, 10000);
-  const auto next = [&] {
-    const double x = coordinate(random);
-    const double y = coordinate(random);
-    return Eigen::Vector3d(x, y, coordinate(random));
-  };
-  for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3d along = 12.0 * 4097.0 * next();
-    const Eigen::Vector3d across = next().cross(along);
-    const Eigen::Vector3d a = across + along / 12.0 * (i % 5);
-    // The sums of the differences of their corners are multiples of `across`.
-    const Eigen::Vector3d b = along / 12.0 * 7.0;
-    ASSERT_TRUE(meet({{0, 0, 0}, along, a}, {{0, 0, 0}, b, a + along / 12.0 * 5.0 - 3.0 * across}));
-    ASSERT_TRUE(meet({-along, along, a}, {b, b - across, a - 2.0 * b - 2.0 * across}));
-  }
-}
-
 // --- An oracle: all pairs, separating axes in integers -------------------------------------------
 
 __extension__ using Wide = __int128;

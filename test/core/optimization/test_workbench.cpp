@@ -1,0 +1,33 @@
+#include "workbench.h"
+
+#include "optimization_cases.h"
+#include "spherical_param/self_intersection.h"
+
+namespace spherical_param::test {
+namespace {
+
+TEST(Workbench, RepairsUntilItsWorkIsDoneOrItsTimeIsOver) {
+  const Case of = noisySphere(300, 0.5, 2);
+  Workbench bench(of.points, of.triangles, of.graph, {}, {});
+  EXPECT_EQ(bench.findIntersections().pairs, findSelfIntersections(of.points, of.triangles));
+  std::size_t tried = 0;
+  for (; bench.mayRepair() && tried < 10000000; tried += 12) {
+    EXPECT_EQ(bench.log.recreated, tried);
+    bench.tryPart({static_cast<Index>(tried % 300)}, 12, [](double) { return false; });
+  }
+  EXPECT_FALSE(bench.tryPart({0}, 12, [](double) { return true; }));
+  EXPECT_EQ(bench.log.recreated, tried);
+  EXPECT_EQ(bench.mesh.mesh().triangles(), of.triangles);  // nothing was accepted
+  EXPECT_FALSE(bench.log.is_out_of_time);
+  bench.renewWork();
+  EXPECT_TRUE(bench.mayRepair());
+
+  Execution hasty;
+  hasty.time_limit = 0.0;
+  Workbench late(of.points, of.triangles, of.graph, {}, hasty);
+  EXPECT_FALSE(late.tryPart({0}, 12, [](double) { return true; }));
+  EXPECT_TRUE(late.log.is_out_of_time);
+}
+
+}  // namespace
+}  // namespace spherical_param::test
