@@ -82,13 +82,57 @@ bool RotationSystem::hasOpposite(const Graph& graph) const {
   return countEdges(graph, [&](Index v, Index w) { return areOpposite(v, w); }) > 0;
 }
 
-std::size_t RotationSystem::countTwisted() const {
-  // Neighbours on one sheet for sure have normals of a larger cosine, but for the sign, and an
-  // edge that is half as steep as between sheets.
-  constexpr double min_one_sheet_cosine = 0.9;
-  return countEdges(edges_, [&](Index v, Index w) {
-    return cosine(v, w) < -min_one_sheet_cosine && slope(v, w) < kMaxSheetSlope / 2.0;
+bool RotationSystem::isOneSided() const {
+  // Neighbours on one sheet for sure have normals of a larger cosine.
+  constexpr double min_one_sheet_cosine = 0.7;
+  constexpr std::size_t min_against = 10;
+  const auto n = static_cast<Index>(edges_.size());
+  // A normal as it is, or turned.
+  UnionFind sides(2 * edges_.size());
+  std::size_t against = 0;
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const Index v : edges_.nodes())
+      for (const Index w : edges_.row(v))
+        if (v < w)
+          visit(v, w);
+  };
+  for_each_edge([&](Index v, Index w) {
+    if (cosine(v, w) >= min_one_sheet_cosine) {
+      sides.unite(v, w);
+      sides.unite(v + n, w + n);
+    }
   });
+  for_each_edge([&](Index v, Index w) {
+    if (!isTwisted(v, w) || !isInGap(v, w) || !isInGap(w, v))
+      return;
+    against += sides.find(v) == sides.find(w) ? 1 : 0;
+    sides.unite(v, w + n);
+    sides.unite(v + n, w);
+  });
+  return against >= min_against;
+}
+
+/// Whether neighbours on one sheet have normals to opposite sides. An edge between sheets may be
+/// twice as steep.
+bool RotationSystem::isTwisted(Index v, Index w) const {
+  constexpr double min_cosine = 0.9;
+  return cosine(v, w) < -min_cosine && slope(v, w) < kMaxSheetSlope / 2.0;
+}
+
+/// Whether a twisted edge of v is in a gap between the others: beside an opposite sheet there is
+/// none.
+bool RotationSystem::isInGap(Index v, Index w) const {
+  constexpr double min_gap = 0.55 * kPi;
+  const double angle = angles_[entryOf(v, w)];
+  double after = 2.0 * kPi;
+  double before = 2.0 * kPi;
+  for (const std::size_t e : edges_.entries(v)) {
+    if (isTwisted(v, edges_.neighbors[e]))
+      continue;
+    after = std::min(after, counterClockwise(angles_[e] - angle));
+    before = std::min(before, counterClockwise(angle - angles_[e]));
+  }
+  return after + before >= min_gap;
 }
 
 NeighborRows RotationSystem::faces(std::size_t min_steps, double min_corner) const {

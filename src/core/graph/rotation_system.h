@@ -39,8 +39,9 @@ public:
   bool leavesSheet(Index v, Index w) const;
   /// Whether some edges of a graph join opposite sheets.
   bool hasOpposite(const Graph& graph) const;
-  /// Edges between neighbours on one sheet that have normals to opposite sides.
-  std::size_t countTwisted() const;
+  /// Whether the surface has only one side: many edges between neighbours on one sheet have normals
+  /// to opposite sides, though ways around them turn no normal over.
+  bool isOneSided() const;
 
   /// The loops of all faces with at least some edges whose mean corner is large enough, with the
   /// face on the left seen from where the normals point.
@@ -57,6 +58,8 @@ private:
   template <typename Condition>
   void keepEdges(const Condition& meets);
   bool areOpposite(Index v, Index w) const;
+  bool isTwisted(Index v, Index w) const;
+  bool isInGap(Index v, Index w) const;
   double slope(Index v, Index w) const;
   bool areJoined(Index v, Index w) const { return edges_.row(v).contains(w); }
   std::vector<char> longerOfCrossing() const;

@@ -279,12 +279,15 @@ private:
   std::optional<Outcome> meshCertainFaces() {
     if (plan_.faces() == nullptr)
       return std::nullopt;
+    std::optional<SphereMesh> faces = *plan_.faces();
+    if (!mayHaveHandles())
+      faces = withoutHandles(points_, graph_, std::move(*faces));
     Outcome outcome;
     outcome.part.openings = plan_.openings();
     outcome.part.optimization = best_->part.optimization;
-    if (!takeCertainFaces(points_, *plan_.faces(), clock_.execution(), outcome.part))
+    if (!faces || !takeCertainFaces(points_, *faces, clock_.execution(), outcome.part))
       return std::nullopt;
-    outcome.genus = facesGenus();
+    outcome.genus = faces->genus();
     return outcome;
   }
 

@@ -139,9 +139,7 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   if (result.openings.empty() && areCoplanar(points))
     if (std::optional<Opening> outside = outsideOf(points, spacing, rotation))
       result.openings.push_back(std::move(*outside));
-  // Neighbours on one sheet with opposite normals, from which on a surface has one side only.
-  constexpr std::size_t min_twisted = 10;
-  result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= min_twisted;
+  result.is_one_sided = rotation.isOneSided();
   result.false_edges = falseEdges(graph, rotation, result);
   std::stable_sort(
       result.openings.begin(), result.openings.end(),
@@ -193,7 +191,7 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
 Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                       RotationSystem& rotation) {
   Openings found = openingsOf(points, graph, spacing, rotation);
-  if (found.openings.empty() || !rotation.hasOpposite(graph))
+  if (found.openings.empty() || found.is_one_sided || !rotation.hasOpposite(graph))
     return found;
   rotation.separateOpposite();
   return openingsOf(points, graph, spacing, rotation);

@@ -35,8 +35,7 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
 /// face has an opening around it, unless it is narrower than a tenth of a spacing.
 ///
 /// With openings, edges between opposite normals are dropped as well: near a loop they join the two
-/// sides of a thin part. A one-sided surface keeps them: there, many are not steep to their planes,
-/// and the graph has no cycles once the openings are filled.
+/// sides of a thin part. A one-sided surface keeps them.
 ///
 /// \param points   3 x n, finite.
 /// \param graph    n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
