@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -90,6 +92,7 @@ bool RotationSystem::isOneSided() const {
   // A normal as it is, or turned.
   UnionFind sides(2 * edges_.size());
   std::size_t against = 0;
+  std::size_t twisted = 0;
   const auto for_each_edge = [&](const auto& visit) {
     for (const Index v : edges_.nodes())
       for (const Index w : edges_.row(v))
@@ -103,12 +106,17 @@ bool RotationSystem::isOneSided() const {
     }
   });
   for_each_edge([&](Index v, Index w) {
-    if (!isTwisted(v, w) || !isInGap(v, w) || !isInGap(w, v))
+    if (!isTwisted(v, w))
+      return;
+    ++twisted;
+    if (!isInGap(v, w) || !isInGap(w, v))
       return;
     against += sides.find(v) == sides.find(w) ? 1 : 0;
     sides.unite(v, w + n);
     sides.unite(v + n, w);
   });
+  if (getenv("DBG"))
+    fprintf(stderr, "against %zu of %zu\n", against, twisted);
   return against >= min_against;
 }
 
