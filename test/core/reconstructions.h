@@ -139,7 +139,8 @@ inline void expectSound(const Surface& result, Index genus, std::size_t openings
   EXPECT_EQ(result.topology.euler_characteristic, 2 - 2 * genus - static_cast<long long>(openings));
   EXPECT_TRUE(result.self_intersections.empty());
   // There is no map of a handle to a sphere.
-  EXPECT_TRUE(result.sphere.cols() == 0 || (genus == 0 && result.sphere.cols() == result.points.cols()));
+  EXPECT_TRUE(result.sphere.cols() == 0 ||
+              (genus == 0 && result.sphere.cols() == result.points.cols()));
   EXPECT_EQ(result.boundary.size(), openings);
   EXPECT_EQ(result.isClosed(), openings == 0);
   if (openings == 0) {
