@@ -19,9 +19,6 @@ import numpy as np
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
-from draw import read_ply  # noqa: E402
-
 TOOLS = pathlib.Path(os.environ.get("TOOLS", ROOT / "build" / "release" / "bin")).resolve()
 PICTURES = ROOT / "doc" / "pictures"
 GITHUB = ROOT / ".github"
@@ -119,19 +116,6 @@ def openings():
          "--edges", "--view=60,15")  # fmt: skip
 
 
-def handles():
-    """The points beside the loops of the handles are left out to show the cut."""
-    cloud = scan("double_torus", 5000)
-    mesh(cloud, "glued")
-    points, report = read_ply(cloud)[0], json.loads(pathlib.Path("report.json").read_text())
-    loops = points[[v for handle in report["handles"] for v in handle["loop"]]]
-    np.savetxt("cut.xyz", [point for point in points if np.linalg.norm(loops - point, axis=1).min() > 0.055])
-    mesh("cut.xyz", "cut", "-handles", "none", "-surface", "open", "-sphere", "sphere.ply")
-    draw(PICTURES / "handles.png", "1320x330", [(cloud, "points"), ("cut.ply", "cut along the loops of two handles"),
-         ("sphere.ply", "a sphere with four discs taken out"), ("glued.ply", "glued: genus 2")],
-         "--edges", "--view=0,50")  # fmt: skip
-
-
 def embedding():
     cloud, views = scan("hand", 8000), []
     for name, text, options in (("paper", "the paper's iteration", PAPER), ("multilevel", "multilevel", [])):
@@ -186,7 +170,7 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, openings, handles, embedding, smoothing, consolidation, symptoms, depth_camera,
+ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera,
        scans]  # fmt: skip
 
 

@@ -15,8 +15,8 @@ struct Progress {
   /// "openings", "embedding", "triangulation", "optimization", "smoothing", "cleaning", "fill" or
   /// "quality".
   const char* stage;
-  /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops,
-  /// and "openings" comes back where a surface is cut.
+  /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops, and comes back
+  /// where a part is meshed in another way.
   double fraction;
   std::size_t part = 0;   ///< the part at hand, from 0
   std::size_t parts = 1;  ///< number of parts that are meshed
@@ -32,8 +32,8 @@ struct Execution {
   /// Wall time after which the work ends with the best mesh so far [s]; [0, 1e9]. Unset: no limit.
   /// The first mesh of each part is finished, however long that takes; 0: the work ends with it.
   /// Parts share the limit in proportion to their points; before smoothing, the optimisation gets
-  /// half of the remaining time, before FillMode::Smooth four fifths. If it ends the work, handles
-  /// and folds are not distinguished. The mesh then depends on the machine.
+  /// half of the remaining time, before FillMode::Smooth four fifths. If it ends the work, no
+  /// other way to mesh a part is tried. The mesh then depends on the machine.
   std::optional<double> time_limit = {};
 };
 

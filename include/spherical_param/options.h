@@ -120,7 +120,7 @@ enum class FillMode {
 enum class HandleMode {
   AsTopology,  ///< Auto for TopologyMode::Scan, else None
   None,        ///< no handles: the mesh is one sphere, or one with openings
-  Auto,  ///< those that are certain; long tubes are cut into several spheres while they are meshed
+  Auto,        ///< those that are certain
 };
 
 /// What happens to triangles that still intersect at the end.

@@ -30,8 +30,8 @@ std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen:
                                            bool has_rows);
 
 /// Meshes a point cloud: neighbours -> neighbour graph -> stray points and parts -> of each part
-/// openings -> embedding on the sphere -> triangulation there -> optimisation on the points ->
-/// verdict.
+/// openings -> faces of the graph or, where these have defects, embedding on the sphere and
+/// triangulation there -> optimisation on the points -> verdict.
 ///
 /// \param points 3 x n, at least 4 of them finite, distinct and not all in one plane; coordinates
 /// up
@@ -51,7 +51,7 @@ std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen:
 ///        is thrown.
 ///
 /// Guaranteed: each mesh is manifold and consistently oriented, and closed and in one piece unless
-/// it has openings. It has the handles that are listed; with HandleMode::None it is a sphere.
+/// it has openings. Surface::genus() counts its handles; with HandleMode::None it has none.
 /// Every distinct (or consolidated) point of its part is a vertex, but for LeftOut::unmeshed, which
 /// IntersectionMode::Keep leaves empty. The same input and options give the same result, bit by
 /// bit, for any number of threads, unless a time limit ends the work. Reentrant.

@@ -74,8 +74,8 @@ struct Opening {
 namespace triangle_mark {
 inline constexpr std::uint8_t self_intersection = 1;  ///< intersects another triangle
 inline constexpr std::uint8_t filled_hole = 2;        ///< over a filled, certain opening
-inline constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
-inline constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
+inline constexpr std::uint8_t part_bridge = 4;        ///< at the ends of bridges between parts
+inline constexpr std::uint8_t outside_graph = 8;      ///< at an edge outside the graph's 2-ring
 }  // namespace triangle_mark
 
 /// Two parts of the cloud with a gap between them.
@@ -92,9 +92,9 @@ struct PartBridge {
 struct SurfaceDiagnosis {
   /// Handles that the cloud certainly has and the mesh has not: it is cut there.
   std::size_t cut_handles = 0;
-  std::vector<PartBridge> bridges;               ///< in descending number of points
-  std::size_t joined_parts = 0;                  ///< that the bridges join; they may form cycles
-  bool is_one_sided = false;  ///< like a Moebius strip or a Klein bottle; the mesh is torn
+  std::vector<PartBridge> bridges;  ///< in descending number of points
+  std::size_t joined_parts = 0;     ///< that the bridges join; they may form cycles
+  bool is_one_sided = false;        ///< like a Moebius strip or a Klein bottle; the mesh is torn
   bool is_on_lines = false;   ///< the points lie along lines, like contours, far from each other
   bool fills_volume = false;  ///< the points fill a volume: there is no surface
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph; [0, 1].

@@ -315,11 +315,11 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
          FieldKind::PerTriangle},
         &Of::triangles);
-  visit(
-      {"sphere",
-       "unit vectors: the embedding; none if the mesh has handles or tubes too long for one sphere",
-       0, FieldKind::PerVertex},
-      unlessEmpty(&Of::sphere));
+  visit({"sphere",
+         "unit vectors: the embedding, if a view, a tolerance, details or topology sphere ask for "
+         "it; none of a mesh with handles",
+         0, FieldKind::PerVertex},
+        unlessEmpty(&Of::sphere));
   visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
          FieldKind::PerVertex},
         unlessEmpty(&Of::vertex_residuals));

@@ -1,15 +1,14 @@
 #include "spherical_param/reconstruct.h"
 
+#include "attempts.h"
 #include "cloud_surfaces.h"
 #include "consolidation.h"
-#include "attempts.h"
 #include "embedding_history.h"
 #include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
 #include "mesh_cleaning.h"
-#include "open_mesh.h"
 #include "open_surface.h"
 #include "orientation.h"
 #include "paper_method.h"
@@ -88,12 +87,13 @@ PartMesh meshAsPublished(const Positions& points, const Graph& graph, const Opti
                                 clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
-  Triangles triangles = paper::convexHull(mesh.embedding.directions, clock.execution());
-  orientOutward(points, triangles, mesh.embedding);
+  mesh.mesh = SphereMesh(paper::convexHull(mesh.embedding.directions, clock.execution()),
+                         graph.size(), clock.execution().threads);
+  orientOutward(points, mesh.mesh, mesh.embedding);
   clock.begin("quality");
-  mesh.intersecting =
-      findPairsUpTo(mostOfUsable(columnCount(triangles)), points, triangles, clock.execution());
-  finishMesh(points, graph, std::move(triangles), options, clock, mesh);
+  mesh.intersecting = findPairsUpTo(mostOfUsable(mesh.mesh.slotCount()), points,
+                                    mesh.mesh.triangles(), clock.execution());
+  finishMesh(points, graph, options, clock, mesh);
   return mesh;
 }
 
@@ -111,8 +111,8 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
   clock.keep(0.0);
   FinishedMesh finished;
   finished.faced_by = orient(points, info, mesh.mesh, mesh.embedding);
-  const Triangles triangles = surfaceOf(mesh.mesh);
-  finished.points = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  const Triangles triangles = mesh.mesh.surfaceTriangles();
+  finished.points = mesh.isSmoothed() ? mesh.smoothed : points;
   finished.triangles = triangles;
   finished.input_of_vertex.resize(columnCount(points));
   std::iota(finished.input_of_vertex.begin(), finished.input_of_vertex.end(), Index{0});
@@ -208,27 +208,27 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
 /// Leaves out the surfaces that are not usable, if the others have a third of the points.
 ///
 /// \param failed receives their points.
-void dropTangles(Result& result, std::vector<Index>& failed) {
-  constexpr std::size_t kept_of = 3;
-  const auto is_tangle = [](const Surface& surface) {
+void leaveOutUnusable(Result& result, std::vector<Index>& failed) {
+  constexpr double min_kept = 1.0 / 3.0;
+  const auto is_unusable = [](const Surface& surface) {
     return !surface.isUsable() && !surface.is_out_of_time;
   };
   std::vector<Surface>& surfaces = result.surfaces;
   std::vector<Index> dropped;
-  std::size_t tangles = 0;
+  std::size_t unusable = 0;
   std::size_t kept = 0;
   for (const Surface& surface : surfaces)
-    if (is_tangle(surface)) {
+    if (is_unusable(surface)) {
       dropped.insert(dropped.end(), surface.inputs.begin(), surface.inputs.end());
-      ++tangles;
+      ++unusable;
     } else {
       kept += surface.inputs.size();
     }
-  if (tangles == 0 || kept_of * kept < kept + dropped.size())
+  if (unusable == 0 || kept < fractionOf(min_kept, kept + dropped.size()))
     return;
-  surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_tangle), surfaces.end());
+  surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_unusable), surfaces.end());
   result.failures.push_back(
-      failureOf(tangles, dropped.size(), "more than 1 % of the triangles intersect"));
+      failureOf(unusable, dropped.size(), "more than 1 % of the triangles intersect"));
   failed.insert(failed.end(), dropped.begin(), dropped.end());
 }
 
@@ -267,7 +267,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
   if (removesIntersections(options))
-    dropTangles(result, failed);
+    leaveOutUnusable(result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
   std::sort(left_out.begin(), left_out.end());

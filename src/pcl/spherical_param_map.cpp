@@ -137,18 +137,19 @@ void addCoordinates(const spherical_param::TextureAtlas& atlas, pcl::TextureMesh
 
 }  // namespace
 
-void requireSphere(const spherical_param::Surface& surface) {
-  if (surface.sphere.cols() > 0)
-    return;
+void requireMap(const spherical_param::Surface& surface, HandlesOnSphere handles) {
+  const std::string problem = "the mesh has no map to one sphere: it ";
   if (surface.has_certain_triangles_only)
-    throw InvalidInput("the mesh has no map to one sphere: it is a tangle; call "
-                       "setTopology(TopologyMode::Sphere), which maps it as it is");
-  const std::size_t handles = surface.genus();
-  throw InvalidInput(
-      "the mesh has no map to one sphere: it " +
-      (handles > 0 ? "has " + std::to_string(handles) + (handles == 1 ? " handle" : " handles")
-                   : std::string("was glued from several")) +
-      "; call setHandles(HandleMode::None), which cuts them");
+    throw InvalidInput(problem + "is a tangle; call setTopology(TopologyMode::Sphere), which maps "
+                                 "it as it is");
+  if (surface.topology.components > 1)
+    throw InvalidInput(problem + "is in " + std::to_string(surface.topology.components) +
+                       " pieces; call setTopology(TopologyMode::Sphere), which joins them");
+  const std::size_t count = surface.genus();
+  if (count > 0 && handles == HandlesOnSphere::Refused)
+    throw InvalidInput(problem + "has " + std::to_string(count) +
+                       (count == 1 ? " handle" : " handles") +
+                       "; call setHandles(HandleMode::None), which cuts them");
 }
 
 pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOptions& options,

@@ -307,6 +307,7 @@ TEST_F(SphericalParamReconstruction, SphereFitsTheCloudAndOutlivesIt) {
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
   reconstruction.setInputCloud(hard.cloud);
   reconstruction.setIndices(share(hard.indices));
+  reconstruction.setDetails(true);
   meshed(reconstruction);
   const Surface& result = reconstruction.getResult().surface();
   reconstruction.setInputCloud(makeEllipsoid(5));
@@ -374,6 +375,9 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
   EXPECT_EQ(unset.getKSearch(), 25);
   EXPECT_FALSE(unset.getTolerance().has_value());
   EXPECT_FALSE(unset.getProgressCallback());
+  EXPECT_FALSE(unset.getDetails());
+  unset.setDetails(true);
+  EXPECT_TRUE(unset.getDetails() && unset.getOptions().details);
   unset.setOutlierSigma(6.0);  // beside the mode in the table
   EXPECT_EQ(unset.getOptions().outlier_sigma, 6.0);
   EXPECT_EQ(unset.getOutlierSigma(), 6.0);
@@ -420,6 +424,7 @@ TEST_F(SphericalParamReconstruction, ObjectsInSeveralThreadsAndCopiesAreIndepend
   const auto run = [&](std::size_t i) {
     Reconstruction reconstruction = reconstructionOf(cloud, i == 1);
     reconstruction.setNumberOfThreads(static_cast<unsigned int>(i % 3));
+    reconstruction.setDetails(true);
     reconstruction.reconstruct();
     return reconstruction.getResult().surface().sphere;
   };
@@ -452,6 +457,7 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
   for (const bool has_search : {false, true}) {
     Reconstruction reconstruction = reconstructionOf(cloud, has_search);
     reconstruction.setParts(PartsMode::Each);
+    reconstruction.setDetails(true);
     const Polygons polygons = meshed(reconstruction);
     ASSERT_EQ(reconstruction.getPartCount(), 2U);
     EXPECT_EQ(polygons.size(), 596U + 396U);
@@ -463,7 +469,7 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
               polygons.front().vertices.front());
     EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles, trianglesOf(meshed(small)));
-    EXPECT_TRUE(reconstruction.getDiagnosis(1).looksClosedGenus0());
+    EXPECT_EQ(reconstruction.getDiagnosis(1).triangle_marks, std::vector<std::uint8_t>(396, 0));
     const auto sphere = reconstruction.getSphereCoordinates();
     EXPECT_TRUE(sphere->is_dense);
     for (const PointXYZ& point : *sphere)
@@ -477,6 +483,7 @@ TEST(PartsOfCloud, WithHandlesHaveNoPlaceOnTheSphere) {
   *cloud += *beside(makeEllipsoid(300));
   Reconstruction reconstruction = reconstructionOf(cloud);
   reconstruction.setParts(PartsMode::Each);
+  reconstruction.setDetails(true);
   meshed(reconstruction);
   ASSERT_EQ(reconstruction.getPartCount(), 2U);
   const auto sphere = reconstruction.getSphereCoordinates();

@@ -11,7 +11,7 @@ class Maps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.points = shapes.bumpy(600)
-        cls.mesh = sp.reconstruct(cls.points)
+        cls.mesh = sp.reconstruct(cls.points, details=True)
         cls.map = sp.sphere_map(cls.mesh)
 
     def test_maps_are_one_to_one_and_their_distortion_is_that_of_their_arrays(self):
@@ -50,6 +50,16 @@ class Maps(unittest.TestCase):
         self.assertFalse(np.shares_memory(again.vertices, mesh.vertices))
         smooth = sp.reconstruct(self.points, smoothing=3)
         np.testing.assert_array_equal(sp.sphere_map(smooth, sweeps=0).vertices, smooth.vertices)
+
+    def test_the_embedding_only_turns_a_map(self):
+        free = sp.sphere_map(self.mesh.vertices, self.mesh.triangles)
+        self.assertEqual((free.before, free.distortion.flipped_triangles), (None, 0))
+        products = free.directions @ free.directions.T
+        np.testing.assert_allclose(products, self.map.directions @ self.map.directions.T, atol=1e-9)
+        plain = sp.reconstruct(self.points)  # made from the faces of the graph
+        self.assertEqual((plain.sphere, sp.sphere_map(plain).before), (None, None))
+        with self.assertRaisesRegex(sp.InvalidInput, "no sphere to measure; .*details=True"):
+            sp.measure_map_distortion(plain)
 
     def test_surfaces_with_openings_stay_open(self):
         points = shapes.ellipsoid(1500)

@@ -18,13 +18,13 @@ OTHERS = {"columns": ("x,y,z",), "details": (1, "yes", None), "progress": (1, "p
 class Mesh(shapes.InFolder):
     def test_the_mesh_and_its_numbers_are_those_of_the_arrays(self):
         points = shapes.ellipsoid(600)
-        mesh = sp.reconstruct(points)
+        mesh = sp.reconstruct(points, details=True)
         shapes.check_closed(self, 600, mesh.triangles)
         np.testing.assert_array_equal(mesh.vertices, points)
         np.testing.assert_array_equal(mesh.input_of_vertex, np.arange(600))
         self.assertEqual((mesh.triangles.dtype, mesh.sphere.dtype), (np.int32, np.float64))
         np.testing.assert_allclose(np.linalg.norm(mesh.sphere, axis=1), 1.0, atol=1e-12)
-        self.assertTrue(mesh.diagnosis.looks_closed_genus0)
+        self.assertEqual((mesh.findings, mesh.diagnosis.cut_handles), ((), 0))
         self.assertEqual((mesh.topology.euler_characteristic, mesh.topology.genus), (2, 0))
         self.assertEqual((mesh.self_intersections.shape, mesh.boundary), ((0, 2), ()))
         # Outward, and rounding of some thousand terms.
@@ -47,7 +47,7 @@ class Mesh(shapes.InFolder):
 
     def test_any_layout_and_real_type_gives_the_same_bytes(self):
         points = shapes.ellipsoid(300).astype(np.float32).astype(float)
-        expected = sp.reconstruct(points)
+        expected = sp.reconstruct(points, details=True)
         wide = np.zeros((300, 7))
         wide[:, 1:6:2] = points
         read_only = points.copy()
@@ -56,7 +56,7 @@ class Mesh(shapes.InFolder):
         for same in (points.astype(np.float32), np.asfortranarray(points), wide[:, 1:6:2], points.tolist(),
                      fractions, points.astype(">f8"), read_only):  # fmt: skip
             with self.subTest(type(same), dtype=getattr(same, "dtype", None)):
-                mesh = sp.reconstruct(same)
+                mesh = sp.reconstruct(same, details=True)
                 self.assertEqual(mesh.triangles.tobytes(), expected.triangles.tobytes())
                 self.assertEqual(mesh.sphere.tobytes(), expected.sphere.tobytes())
                 self.assertEqual(mesh.vertices.tobytes(), points.tobytes())
@@ -95,8 +95,7 @@ class Mesh(shapes.InFolder):
         np.testing.assert_array_equal(np.frombuffer(body, record, len(marks))["added"], marks)
         both[1].write(path)
         self.assertNotIn(b"added", path.read_bytes())
-        with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
-            sp.sphere_map(mesh)
+        self.assertEqual(sp.sphere_map(mesh, sweeps=0).distortion.flipped_triangles, 0)
 
     def test_ignored_and_repeated_points_are_counted_and_indexed(self):
         points = shapes.ellipsoid(300)
@@ -126,7 +125,7 @@ class Mesh(shapes.InFolder):
         (part,) = sp.reconstruct(parts, topology="sphere").diagnosis.bridges
         self.assertEqual((part.points, part.other_points), (300, len(points)))
         mesh = sp.reconstruct(points, topology="sphere", details=True)
-        self.assertEqual((mesh.diagnosis.kind, mesh.boundary), ("open", ()))
+        self.assertEqual(mesh.boundary, ())
         (opening,) = mesh.openings
         self.assertTrue(opening.is_filled and opening.is_certain)
         np.testing.assert_allclose(opening.center, [0, 0, 0.3], atol=0.1)
@@ -136,20 +135,17 @@ class Mesh(shapes.InFolder):
         filled = np.flatnonzero(marks & sp.TriangleMark.FILLED_HOLE)
         np.testing.assert_array_equal(filled, np.sort(opening.triangles))
 
-    def test_handles_are_listed_and_such_meshes_have_no_sphere(self):
+    def test_handles_are_counted_in_the_mesh_or_as_cut(self):
         points = shapes.torus(24)
-        mesh = sp.reconstruct(points)
-        self.assertEqual((mesh.topology.genus, mesh.diagnosis.kind), (1, "handles"))
+        mesh = sp.reconstruct(points, details=True)
+        self.assertEqual((mesh.topology.genus, mesh.diagnosis.cut_handles), (1, 0))
         self.assertEqual(mesh.verdict, "A sound mesh with 1 handle.")
-        (handle,) = mesh.handles
-        ring = points[handle.loop]
-        length = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum()
-        self.assertAlmostEqual(handle.length, length, delta=1e-12)
-        np.testing.assert_allclose(handle.center, ring.mean(axis=0), atol=1e-12)
-        self.assertEqual((handle.is_cut, mesh.sphere, mesh.vertex_residuals), (False, None, None))
-        cut = sp.reconstruct(points, handles="none")
-        self.assertEqual((cut.topology.genus, cut.diagnosis.genus), (0, 1))
-        self.assertEqual(cut.sphere.shape, points.shape)
+        self.assertEqual((mesh.sphere, mesh.vertex_residuals), (None, None))
+        for options, remedy in (({"handles": "none"}, 'handles="auto"'), ({"topology": "sphere"}, 'topology="scan"')):
+            cut = sp.reconstruct(points, details=True, **options)
+            self.assertEqual((cut.topology.genus, cut.diagnosis.cut_handles), (0, 1))
+            self.assertIn(f"1 handle, cut: the mesh is a sphere: try {remedy}", [str(each) for each in cut.findings])
+            self.assertEqual(cut.sphere.shape, points.shape)
 
 
 class Options(unittest.TestCase):

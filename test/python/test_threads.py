@@ -65,7 +65,7 @@ class Threads(unittest.TestCase):
         points, found = shapes.bumpy(1000), {}
 
         def run(threads):
-            mesh = sp.reconstruct(points, threads=threads)
+            mesh = sp.reconstruct(points, threads=threads, details=True)
             new = sp.remesh(mesh, points=162, sweeps=3, threads=threads)
             found[threads] = mesh.sphere.tobytes() + new.vertices.tobytes()
 

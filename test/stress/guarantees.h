@@ -133,9 +133,7 @@ inline std::string faultOfTopology(const Surface& result) {
                               pieces))
     return "the mesh is not a manifold with the boundary, the pieces and the genus that are "
            "reported";
-  const auto genus = static_cast<long long>(result.genus());
-  if (result.topology.closed != result.isClosed() ||
-      (!result.has_certain_triangles_only && result.topology.genus != genus))
+  if (result.topology.closed != result.isClosed())
     return "the result's own checks do not agree";
   return "";
 }
@@ -170,8 +168,9 @@ inline std::string faultOf(const Positions& cloud, const Options& options, const
   if (result.isClosed() && facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
     return "the triangles face inward";
   const bool has_sphere = result.sphere.cols() > 0;
-  const bool is_one = is_sphere && options.handles == HandleMode::None;
-  if ((has_sphere ? genus > 0 || result.sphere.cols() != count : genus == 0 && is_one) ||
+  const bool has_details = options.details || options.topology == TopologyMode::Sphere;
+  const bool must_have = has_details && genus == 0 && !result.has_certain_triangles_only;
+  if ((has_sphere ? genus > 0 || result.sphere.cols() != count : must_have) ||
       !areUnitVectors(result.sphere))
     return "the embedding is not of unit vectors, or not of a sphere";
   if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))

@@ -18,7 +18,7 @@ from tool_test import (Mesh, ToolTest, call, check_surface, ellipsoid, hemispher
 # the reconstruction, and the last stages of its report.
 TOOLS = {
     "reconstruction": ("in.ply out.ply -sphere s.vtk -smoothing 4 -outliers 5",
-                       "sphere report", "optimization smoothing cleaning quality write"),
+                       "sphere report", "optimization smoothing cleaning embedding quality write"),
     "remesh": ("in.ply out.ply -sphere s.ply -harmonics c.json -degree 6",
                "grid points side fit sphere harmonics series degree area-weight map-sweeps",
                "map surface harmonics resample untangle verify write"),

@@ -83,26 +83,32 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   cloud.stages.insert(cloud.stages.end(), cloud.result.stages.begin(), cloud.result.stages.end());
 }
 
+void requireMap(const std::string& name, const Surface& surface, bool cuts_handles) {
+  const std::string problem = name + " has no map to one sphere: ";
+  if (surface.has_certain_triangles_only) {
+    throw Failure(problem + "it is a tangle", "give -topology sphere, which maps it as it is");
+  }
+  if (surface.topology.components > 1) {
+    throw Failure(problem + "its mesh is in " + counted(surface.topology.components, "piece"),
+                  "give -topology sphere, which joins them");
+  }
+  if (surface.genus() > 0 && !cuts_handles) {
+    throw Failure(problem + "its mesh has " + counted(surface.genus(), "handle"),
+                  "give -handles none, which cuts them");
+  }
+}
+
 void requireSpheres(const std::string& path, const CloudReconstruction& cloud, bool of_all) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   for (std::size_t i = 0; i < (of_all ? surfaces.size() : 1); ++i) {
-    if (surfaces[i].sphere.cols() > 0) {
-      continue;
-    }
     if (surfaces[i].added_vertices > 0) {
       throw Failure(inQuotes(path) + " has no map to one sphere: vertices were added",
                     "give -fill flat, which adds none");
     }
-    const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
-    if (surfaces[i].has_certain_triangles_only) {
-      throw Failure(part + inQuotes(path) + " has no map to one sphere: it is a tangle",
-                    "give -topology sphere, which maps it as it is");
+    if (surfaces[i].sphere.cols() == 0) {
+      const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
+      requireMap(part + inQuotes(path), surfaces[i], false);
     }
-    const std::string mesh = surfaces[i].genus() > 0
-                                 ? "its mesh has " + counted(surfaces[i].genus(), "handle")
-                                 : "its mesh was glued from several";
-    throw Failure(part + inQuotes(path) + " has no map to one sphere: " + mesh,
-                  "give -handles none, which cuts them");
   }
 }
 

@@ -54,6 +54,8 @@ void fitFindings(const ProductSettings& settings, std::vector<Finding>& findings
 
 ProductSettings::ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map)
     : handles(on_sphere), map(std::move(of_map)) {
+  // The embedding turns the map, and the report has its distortion.
+  reconstruction.options.details = true;
   if (handles == HandlesOnSphere::Refused) {
     reconstruction.options.topology = TopologyMode::Sphere;
   }
@@ -91,11 +93,9 @@ void parseProductOptions(const CommandLine& command_line, ProductSettings& setti
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
-  if (settings.handles == HandlesOnSphere::Refused) {
-    requireSpheres(path, mapped.cloud, true);
-  }
-  fitFindings(settings, mapped.cloud.result.findings);
   const Surface& surface = mapped.cloud.surface();
+  requireMap(inQuotes(path), surface, settings.handles == HandlesOnSphere::Cut);
+  fitFindings(settings, mapped.cloud.result.findings);
   console.begin("map");
   SphereMapOptions options = settings.map;
   options.progress = console.progress();

@@ -1,14 +1,11 @@
 // Reads the data, and puts the page together: first words, which need no WebGL, then the views.
 
 const outlier_color = '#e14614';
-const handle_color = '#7346d2';
-const cut_handle_color = '#c85aa5';
 const flag_kinds = [
   { bit: 1, name: 'Self-intersection', color: '#d53c00' },
   { bit: 2, name: 'Filled hole', color: '#006ebe' },
-  { bit: 4, name: 'Cut handle', color: cut_handle_color },
-  { bit: 8, name: 'Bridge between parts', color: '#00966e' },
-  { bit: 16, name: "Edge outside the graph's 2-ring", color: '#d79600', harmless: true },
+  { bit: 4, name: 'Bridge between parts', color: '#00966e' },
+  { bit: 8, name: "Edge outside the graph's 2-ring", color: '#d79600', harmless: true },
 ];
 
 /** The arrays of the data: {values: integers, numbers(), low, high}. */
@@ -158,7 +155,7 @@ function tour(attributes, color, text, places, lookAt) {
     make('span', { class: 'swatch', style: { background: color } }), text);
 }
 
-/** Buttons that lead to suspicious triangles and to the handles, those of the mesh and the cut. */
+/** Buttons that lead to suspicious triangles. */
 function showPlaces(kinds, views, select) {
   byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
     ...kinds.map((kind) => tour({ 'data-bit': kind.bit }, kind.color,
@@ -169,13 +166,6 @@ function showPlaces(kinds, views, select) {
         views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
         views.lookAt(views.triangles[3 * triangle]);
       })));
-  for (const [is_cut, name, color] of [
-    [false, 'Handle', handle_color], [true, 'Possible handle, cut', cut_handle_color]]) {
-    const loops = views.handles.filter((handle) => handle.is_cut === is_cut);
-    if (loops.length === 0) continue;
-    byId('flags').append(tour({ class: 'handles' }, color, `${name}: ${counted(loops.length, 'loop')}`, loops,
-      (loop) => views.lookAtHandle(loop)));
-  }
 }
 
 function describe(vertex, modes, arrays) {

@@ -43,8 +43,6 @@ function total(report, numberOf) {
   return numbers.length > 0 ? numbers.reduce((sum, x) => sum + x) : undefined;
 }
 
-const handlesOf = (part) => part.handles?.filter((handle) => !handle.is_cut).length;
-
 function showVerdict({ report, tool, mesh }) {
   const title = String(report.input ?? 'Report').split(/[/\\]/).pop();
   document.title = `Report on ${title}`;
@@ -65,10 +63,9 @@ function showVerdict({ report, tool, mesh }) {
       'intersect'],
   ];
   const closed = parts.every((part) => part.closed);
-  if (parts.length === 1 && (closed || handlesOf(parts[0]) > 0)) {
-    const [{ genus, components }] = parts;
-    const handles = handlesOf(parts[0]) ?? 0;
-    checks.unshift([genus === handles, `Genus ${handles}`, `Genus ${genus}`],
+  const [{ genus, components }] = parts;
+  if (parts.length === 1 && (closed || genus > 0)) {
+    checks.unshift([genus !== null, `Genus ${genus}`, 'No genus'],
       [components === 1, 'One component', counted(components, 'component')]);
   }
   if (closed) checks.unshift([true, 'Closed', '']);
@@ -103,13 +100,13 @@ function showTables({ report, command }) {
     ['Vertices', sum((part) => part.vertices)],
     ['Triangles', sum((part) => part.triangles)],
     ['Openings left open', sum((part) => part.boundary?.length) || undefined],
-    ['Handles', sum(handlesOf) || undefined],
+    ['Handles', sum((part) => part.genus) || undefined],
     ['Edges outside the graph', diagnosis?.edges_outside_graph],
     ['Volume', sum((part) => part.measures?.volume)],
     ['Area', sum((part) => part.measures?.area)],
     ['Mean edge length', measures?.mean_edge_length],
     ['Size', measures?.box_max?.map((x, c) => number(x - measures.box_min[c])).join(' × ')],
-    ['Residual', embedding.residual],
+    ['Residual', embedding.residual || undefined],
     ['Embedding', embedding.stop_reason === 'unfinished' ? null : embedding.stop_reason?.replaceAll('_', ' ')],
     ['Points moved by smoothing (max)', smoothing?.max_displacement],
     ['Peak memory [bytes]', report.peak_memory_bytes],

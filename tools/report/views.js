@@ -69,7 +69,7 @@ const colorsOf = (vertices) =>
 class Views extends Shape {
   constructor(canvas, context, arrays, data) {
     super(arrays, data);
-    const { sphere_turn, spacing, handles, view } = data;
+    const { sphere_turn, spacing, view } = data;
     this.canvas = canvas;
     this.names = ['mesh', 'cloud', ...(arrays.sphere ? ['sphere'] : [])]; // meshes with handles have no sphere
     byId('view-sphere').hidden = !arrays.sphere;
@@ -83,7 +83,6 @@ class Views extends Shape {
       this.align = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().set(...sphere_turn));
     }
     if (arrays.history_frames) this.makeHistory(arrays);
-    this.makeHandles(handles, arrays.handles);
     this.target = new THREE.Vector3();
     this.controls = this.names.map((name) => this.makeControls(name));
     this.reset();
@@ -282,27 +281,6 @@ class Views extends Shape {
       return this.add(name, object);
     }));
     this.request();
-  }
-
-  /** Shows the loops of handles: [{points, is_cut}], with the rows of all of them. */
-  makeHandles(handles, array) {
-    const nodes = array ? this.normalized(array) : [];
-    let first = 0;
-    this.handles = handles.map(({ points, is_cut }) => {
-      const loop = Array.from({ length: points }, () => this.vector(first++, nodes));
-      const radius = Math.min(Math.max(this.edge / 4, 0.003), 0.008);
-      const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(loop, true), 4 * points, radius, 6, true);
-      const color = is_cut ? cut_handle_color : handle_color;
-      this.add('mesh', new THREE.Mesh(tube, new THREE.MeshPhongMaterial({ color })));
-      return { is_cut, loop };
-    });
-  }
-
-  /** Brings a handle to the middle of the views. */
-  lookAtHandle({ loop }) {
-    const distances = Array.from({ length: this.positions.length / 3 },
-      (_, vertex) => this.vector(vertex).distanceToSquared(loop[0]));
-    this.lookAt(distances.reduce((best, distance, vertex) => (distance < distances[best] ? vertex : best), 0));
   }
 
   makeHistory(arrays) {

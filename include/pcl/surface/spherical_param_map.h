@@ -14,7 +14,8 @@ namespace pcl {
  * for texturing, remeshing and morphing.
  *
  * The vertices of the mesh are those of reconstruction.getResult(), which stays there, with its
- * triangles; reconstruction.getVertexIndices() has their indices in the cloud.
+ * triangles; reconstruction.getVertexIndices() has their indices in the cloud. With
+ * setDetails(true) the map is turned as the embedding is.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called
  * \param[out] points 3 x v, the vertices: consolidated and smoothed if the options say so
@@ -31,9 +32,6 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
 
 namespace detail {
 
-/** \brief Throws InvalidInput for a mesh without a map to one sphere. */
-PCL_EXPORTS void requireSphere(const spherical_param::Surface& surface);
-
 /** \brief A mesh with its map to the sphere; one with handles is cut. */
 struct MappedMesh : spherical_param::CutMesh {
   spherical_param::SphereMap map;
@@ -41,6 +39,9 @@ struct MappedMesh : spherical_param::CutMesh {
 
 /** \brief What becomes of a mesh with handles, which has no map to one sphere. */
 enum class HandlesOnSphere { Cut, Refused };
+
+/** \brief Throws InvalidInput for a mesh without a map to one sphere. */
+PCL_EXPORTS void requireMap(const spherical_param::Surface& surface, HandlesOnSphere handles);
 
 /** \brief Meshes a cloud and maps the mesh. \return false after a failure */
 template <typename PointInT>
@@ -55,8 +56,7 @@ bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSp
     spherical_param::SphereMapOptions guarded = options;
     static_cast<spherical_param::Execution&>(guarded) = execution;
     const spherical_param::Surface& result = reconstruction.getResult().surface();
-    if (handles == HandlesOnSphere::Refused)
-      requireSphere(result);
+    requireMap(result, handles);
     MappedMesh made{spherical_param::cutHandles(result.points, result.triangles), {}};
     made.map =
         spherical_param::computeSphereMap(made.points, made.triangles, result.sphere, guarded);

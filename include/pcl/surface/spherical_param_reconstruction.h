@@ -22,10 +22,10 @@ namespace pcl {
  * certain stray points; on request as one closed surface of genus 0 through every distinct finite
  * point (setTopology()). It needs no normals, no radius and no tuning.
  *
- * A graph of local Delaunay neighbourhoods is embedded on the unit sphere from coarse to fine, so
- * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
- * the embedded points, which is their convex hull, gives a first connectivity; its decisions are
- * exact. A surface with handles is cut into spheres first, whose meshes are then glued. The mesh is
+ * The faces of a graph of local Delaunay neighbourhoods give a first connectivity. Where they have
+ * defects, the graph is also embedded on the unit sphere from coarse to fine, so that limbs are
+ * unfolded, towards a vanishing tangential Laplacian; the Delaunay triangulation of the embedded
+ * points, which is their convex hull, is another one, whose decisions are exact. The mesh is
  * optimised on the points themselves, by moves that keep its topology, until no triangles
  * intersect, if possible (getSelfIntersections()); the points are never moved. getDiagnosis() lists
  * evidence against a closed surface without handles, and its place.
@@ -138,7 +138,7 @@ public:
    * one with openings. Default: as setTopology() says.
    *
    * A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None for
-   * remeshing and morphing. getResult() has the loops of the handles. */
+   * remeshing and morphing. Surface::genus() of getResult() is the number of handles. */
   void setHandles(HandleMode mode) { options_.handles = mode; }
   HandleMode getHandles() const { return options_.handles; }  ///< As set. \return it
 
@@ -221,6 +221,13 @@ public:
    * far they moved. */
   void setSmoothing(int steps) { options_.smoothing = steps; }
   int getSmoothing() const { return options_.smoothing; }  ///< As set. \return it
+
+  /** \brief Set whether what is not needed for the mesh is computed as well: the embedding on the
+   * sphere (getSphereCoordinates()), the residual of each vertex and the findings at each triangle
+   * (getResult()).
+   * \param[in] details default false */
+  void setDetails(bool details) { options_.details = details; }
+  bool getDetails() const { return options_.details; }  ///< As set. \return it
 
   /** \brief Set the seed of all random choices: the order of coarsening in the embedding, and the
    * parts of the mesh that the optimisation rebuilds. The same seed gives the same result.
@@ -307,6 +314,8 @@ public:
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
    * or whose mesh has handles are NaN. Empty after a failure and if no mesh has a sphere.
+   * \note It needs setDetails(true), TopologyMode::Sphere, a tolerance, or a view: other meshes are
+   * made without the sphere where that is possible.
    * \note Where the optimisation moved vertices, as on noise, some polygons are inverted on the
    * sphere; with Method::Paper only by rounding.
    * \return a new cloud of the size of the input */

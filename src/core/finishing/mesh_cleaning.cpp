@@ -1,6 +1,5 @@
 #include "mesh_cleaning.h"
 
-#include "face_mesh.h"
 #include "indexed.h"
 #include "intersection_removal.h"
 
@@ -11,26 +10,25 @@ namespace spherical_param::internal {
 namespace {
 
 /// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
-IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const OpenMesh& open,
+IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const SphereMesh& mesh,
                             const Execution& execution) {
-  const std::vector<Index> triangles = trianglesOfSurface(open);
-  IntersectingPairs found =
-      findPairsUpTo(most, positions, open.triangles(Eigen::all, triangles), execution);
+  const std::vector<Index> surface = mesh.surface();
+  IntersectingPairs found = findPairsUpTo(most, positions, mesh.surfaceTriangles(), execution);
   for (auto& pair : found.pairs)
     for (Index& t : pair)
-      t = triangles[static_cast<std::size_t>(t)];
+      t = surface[static_cast<std::size_t>(t)];
   return found;
 }
 
 /// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
 /// them. Returns how many intersect.
 std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
-                                        const IntersectingTriangles& pairs, OpenMesh& open) {
-  OpenMesh rest = open;
+                                        const IntersectingTriangles& pairs, SphereMesh& mesh) {
+  SphereMesh rest = mesh;
   const std::size_t left_out = leaveOutTangles(vertices, pairs, rest);
-  if (surfaceCount(rest) + most < surfaceCount(open))
+  if (rest.surfaceCount() + most < mesh.surfaceCount())
     return std::nullopt;
-  open = std::move(rest);
+  mesh = std::move(rest);
   return left_out;
 }
 
@@ -43,47 +41,47 @@ bool removesIntersections(const Options& options) {
 void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
                PartMesh& mesh) {
   // More of a surface is no spot, but a tangle.
-  constexpr std::size_t vertices_of = 500;
-  constexpr std::size_t triangles_of = 100;
-  constexpr std::size_t tangle_of = 10;
+  constexpr double max_vertices = 0.002;
+  constexpr double max_triangles = 0.01;
+  constexpr double max_intersecting = 0.1;
   const bool removes = removesIntersections(options) && !mesh.optimization.is_out_of_time;
   const bool may_open = options.surface != SurfaceMode::Closed;
-  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
-  const std::size_t triangles = surfaceCount(mesh.mesh);
+  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed : points;
+  const std::size_t triangles = mesh.mesh.surfaceCount();
   // The optimisation has left those of a closed mesh on its points. One of two may stay.
   IntersectingPairs& found = mesh.intersecting;
   if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
-    found = pairsUpTo(removes ? 2 * triangles / tangle_of : 1, positions, mesh.mesh, execution);
+    found = pairsUpTo(removes ? fractionOf(2.0 * max_intersecting, triangles) : 1, positions,
+                      mesh.mesh, execution);
   if (!found.pairs.empty() && !found.is_sample && removes) {
-    const Removal most{columnCount(points) / vertices_of, may_open ? triangles / triangles_of : 0};
+    const Removal most{fractionOf(max_vertices, columnCount(points)),
+                       may_open ? fractionOf(max_triangles, triangles) : 0};
     std::optional<std::size_t> left_out;
     if (const auto removal = clearIntersections(positions, found.pairs, most, mesh.mesh))
       left_out = removal->triangles;
     else if (may_open)
-      left_out = leaveOutUpTo(triangles / tangle_of, columnCount(points), found.pairs, mesh.mesh);
+      left_out = leaveOutUpTo(fractionOf(max_intersecting, triangles), columnCount(points),
+                              found.pairs, mesh.mesh);
     if (left_out) {
       mesh.left_out_triangles = *left_out;
       found = {};
     }
   }
   if (!found.pairs.empty())
-    found = findPairsUpTo(mostOfUsable(triangles), positions, surfaceOf(mesh.mesh), execution);
+    found =
+        findPairsUpTo(mostOfUsable(triangles), positions, mesh.mesh.surfaceTriangles(), execution);
 }
 
-bool takeCertainFaces(const Positions& points, const FaceMesh& faces, const Execution& execution,
+bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Execution& execution,
                       PartMesh& mesh) {
-  constexpr std::size_t vertices_of = 3;
-  mesh.mesh = {faces.triangles, faces.is_filling};
-  const IntersectingPairs found =
-      pairsUpTo(surfaceCount(mesh.mesh), points, mesh.mesh, execution);
+  constexpr double min_vertices = 1.0 / 3.0;
+  mesh.mesh = faces;
+  const IntersectingPairs found = pairsUpTo(faces.surfaceCount(), points, faces, execution);
   if (found.is_sample)
     return false;
   mesh.left_out_triangles = leaveOutTangles(columnCount(points), found.pairs, mesh.mesh);
   mesh.has_certain_triangles_only = true;
-  const Triangles surface = surfaceOf(mesh.mesh);
-  std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
-  sortUnique(vertices);
-  return vertices_of * vertices.size() >= columnCount(points);
+  return mesh.mesh.surfaceVertexCount() >= fractionOf(min_vertices, columnCount(points));
 }
 
 }  // namespace spherical_param::internal

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "face_mesh.h"
 #include "part_mesh.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
@@ -26,7 +25,7 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
 
 /// Makes the faces of a graph the mesh, without those that intersect, if a third of the points is
 /// in it. Returns whether it is.
-bool takeCertainFaces(const Positions& points, const FaceMesh& faces, const Execution& execution,
+bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Execution& execution,
                       PartMesh& mesh);
 
 }  // namespace spherical_param::internal

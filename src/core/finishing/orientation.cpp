@@ -43,22 +43,21 @@ void mirror(Embedding& embedding) {
     frame.sphere = -frame.sphere;
 }
 
-void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding) {
+void orientOutward(const Positions& points, SphereMesh& mesh, Embedding& embedding) {
   // Exactly: the volume of a cloud that is nearly flat may be all rounding.
-  if (volumeSign(points, triangles) >= 0)
+  if (volumeSign(points, mesh.triangles()) >= 0)
     return;
-  flipOrientation(triangles);
+  mesh.turnOver();
   mirror(embedding);
 }
 
-FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
+FacedBy orient(const Positions& points, const CloudInfo& info, SphereMesh& mesh,
                Embedding& embedding) {
-  Triangles& triangles = mesh.triangles;
-  const Triangles seen = surfaceOf(mesh);
-  const bool is_open = seen.cols() < triangles.cols();
+  const Triangles seen = mesh.surfaceTriangles();
+  const bool is_open = seen.cols() < mesh.triangles().cols();
   const auto turns = [&](double agreement, double least) {
     if (agreement <= -least) {
-      flipOrientation(triangles);
+      mesh.turnOver();
       mirror(embedding);
     }
     return std::abs(agreement) >= least;
@@ -68,7 +67,7 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
   if (info.normals.cols() > 0 && turns(agreementWith(info.normals, points, seen), min_of_normals))
     return FacedBy::Normals;
   if (!is_open) {
-    orientOutward(points, triangles, embedding);
+    orientOutward(points, mesh, embedding);
     return FacedBy::Outward;
   }
   double seen_by_sensor = 0.0;
@@ -89,7 +88,7 @@ FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
     return FacedBy::Up;
   if (turns(seen_by_sensor, min_hardly_seen))
     return FacedBy::Viewpoint;
-  orientOutward(points, triangles, embedding);
+  orientOutward(points, mesh, embedding);
   return FacedBy::Outward;
 }
 

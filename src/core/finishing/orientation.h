@@ -1,7 +1,7 @@
 #pragma once
 
 #include "embedding.h"
-#include "open_mesh.h"
+#include "sphere_mesh.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
@@ -19,7 +19,7 @@ void mirror(Embedding& embedding);
 
 /// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
 /// of a closed mesh face outward.
-void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding);
+void orientOutward(const Positions& points, SphereMesh& mesh, Embedding& embedding);
 
 /// Turns sphere and triangles so that the surface faces as the normals do, if these agree on most
 /// of the area; else an open one the viewpoint that looks at it, up if it is low, or the viewpoint
@@ -29,7 +29,7 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
 /// \param info      with normals of these points, and a viewpoint in their unit.
 /// \param mesh      closed, with its openings.
 /// \return what decided.
-FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
+FacedBy orient(const Positions& points, const CloudInfo& info, SphereMesh& mesh,
                Embedding& embedding);
 
 }  // namespace spherical_param::internal

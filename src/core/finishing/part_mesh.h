@@ -3,27 +3,29 @@
 #include "embedding.h"
 #include "intersecting_pairs.h"
 #include "mesh_optimization.h"
-#include "open_mesh.h"
 #include "open_surface.h"
+#include "sphere_mesh.h"
 
 #include <cstddef>
+#include <optional>
 
 namespace spherical_param::internal {
 
 /// A mesh of a part, from its first triangles to the last change. Vertices are nodes, in the unit
 /// of the nodes.
 struct PartMesh {
-  OpenMesh mesh;
-  OpenSurface openings;            ///< of the surface, and which of them are left open
-  SmoothedMesh smoothed;           ///< empty without smoothing
-  Embedding embedding;             ///< without directions if it was not needed, or there is none
+  SphereMesh mesh;
+  OpenSurface openings;                      ///< of the surface, and which of them are left open
+  Positions smoothed;                        ///< 3 x n; empty without smoothing
+  std::optional<SmoothingReport> smoothing;  ///< unset without smoothing
+  Embedding embedding;  ///< without directions if it was not needed, or there is none
   OptimizationReport optimization;
-  IntersectingPairs intersecting;  ///< triangles of the surface
-  std::size_t left_out_triangles = 0;  ///< because they intersect
+  IntersectingPairs intersecting;           ///< triangles of the surface
+  std::size_t left_out_triangles = 0;       ///< because they intersect
   bool has_certain_triangles_only = false;  ///< see Surface
-  std::size_t graph_genus = 0;  ///< handles of the cloud, as far as they are certain
+  std::size_t cut_handles = 0;  ///< of the cloud for sure, that are not wanted
 
-  bool isSmoothed() const { return smoothed.points.cols() > 0; }
+  bool isSmoothed() const { return smoothed.cols() > 0; }
 };
 
 }  // namespace spherical_param::internal

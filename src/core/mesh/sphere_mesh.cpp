@@ -4,6 +4,7 @@
 #include "rows.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spherical_param::internal {
 
@@ -14,8 +15,10 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
   const auto m = columnCount(triangles);
   vertices_.reserve(std::max(m, 2 * vertex_count));
   neighbors_.reserve(std::max(m, 2 * vertex_count));
+  is_open_.reserve(std::max(m, 2 * vertex_count));
   vertices_.resize(m);
   neighbors_.resize(m);
+  is_open_.resize(m, 0);
   threads = threadCount(threads, m);
   forEachIndex(m, threads, {}, [&](Index t) {
     vertices_[t] = {triangles(0, t), triangles(1, t), triangles(2, t)};
@@ -42,6 +45,7 @@ Index SphereMesh::takePlace() {
   if (free_ < 0) {
     vertices_.push_back({-1, -1, -1});
     neighbors_.push_back({-1, -1, -1});
+    is_open_.push_back(0);
     return size() - 1;
   }
   const Index place = free_;
@@ -63,8 +67,10 @@ std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
     // Part k has the side opposite to corner k.
     setTriangle(parts[k], {new_vertex, v[(k + 1) % 3], v[(k + 2) % 3]},
                 {n[k], parts[(k + 1) % 3], parts[(k + 2) % 3]});
-  for (std::size_t k = 1; k < 3; ++k)
+  for (std::size_t k = 1; k < 3; ++k) {
     replaceNeighbor(n[k], triangle, parts[k]);
+    setOpen(parts[k], isOpen(triangle));
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     journal_.set(triangle_at_[v[k]], parts[(k + 1) % 3]);
     addDegree(v[k], 1);
@@ -89,6 +95,7 @@ Index SphereMesh::merge(Index v) {
     ++count;
   });
   const Index t = around[0];
+  setOpen(t, std::any_of(around.begin(), around.end(), [&](Index u) { return isOpen(u); }));
   // The side from ring k to ring k + 1 is opposite to ring k + 2.
   setTriangle(t, ring, {beyond[1], beyond[2], beyond[0]});
   for (std::size_t k = 1; k < 3; ++k)
@@ -147,6 +154,76 @@ Triangles SphereMesh::triangles() const {
     if (a >= 0)
       result.col(column++) << a, b, c;
   return result;
+}
+
+std::vector<Index> SphereMesh::surface() const {
+  std::vector<Index> triangles;
+  for (Index t = 0; t < size(); ++t)
+    if (isUsed(t) && !isOpen(t))
+      triangles.push_back(t);
+  return triangles;
+}
+
+Triangles SphereMesh::surfaceTriangles() const {
+  const std::vector<Index> surface = this->surface();
+  Triangles result(3, static_cast<Eigen::Index>(surface.size()));
+  Eigen::Index column = 0;
+  for (const Index t : surface)
+    result.col(column++) << vertex(t, 0), vertex(t, 1), vertex(t, 2);
+  return result;
+}
+
+std::size_t SphereMesh::surfaceCount() const {
+  std::size_t count = 0;
+  for (Index t = 0; t < size(); ++t)
+    count += isUsed(t) && !isOpen(t) ? 1 : 0;
+  return count;
+}
+
+std::size_t SphereMesh::surfaceVertexCount() const {
+  Indexed<char> is_used(degree_.size(), 0);
+  for (Index t = 0; t < size(); ++t)
+    if (isUsed(t) && !isOpen(t))
+      for (const Index v : vertices(t))
+        is_used[v] = 1;
+  return static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), char{1}));
+}
+
+std::size_t SphereMesh::genus() const {
+  // V - E + F = 2 - 2 g, with 3 F = 2 E.
+  const auto vertices =
+      std::count_if(degree_.begin(), degree_.end(), [](Index degree) { return degree > 0; });
+  return static_cast<std::size_t>(triangle_count_ / 2 + 2 - vertices) / 2;
+}
+
+void SphereMesh::turnOver() {
+  for (Index t = 0; t < size(); ++t) {
+    if (!isUsed(t))
+      continue;
+    std::swap(vertices_[t][1], vertices_[t][2]);
+    std::swap(neighbors_[t][1], neighbors_[t][2]);
+  }
+}
+
+Fan trianglesAround(const SphereMesh& mesh, Index v) {
+  Fan around;
+  mesh.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+  return around;
+}
+
+std::vector<Fan> fansAt(const SphereMesh& mesh, Index v, bool of_open) {
+  const auto is_other = [&](Index t) { return mesh.isOpen(t) != of_open; };
+  Fan around = trianglesAround(mesh, v);
+  std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_other), around.end());
+  std::vector<Fan> fans;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (is_other(around[i]))
+      continue;
+    if (i == 0 || is_other(around[i - 1]))
+      fans.emplace_back();
+    fans.back().push_back(around[i]);
+  }
+  return fans;
 }
 
 }  // namespace spherical_param::internal

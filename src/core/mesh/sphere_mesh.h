@@ -50,12 +50,14 @@ private:
 
 /// A closed triangle mesh with its adjacency: a sphere, a surface with handles, or several. Three
 /// moves keep it so: split a triangle in three by a new vertex, merge the three triangles around a
-/// vertex, flip an edge whose opposite vertices are not joined. Moves can be rolled back exactly.
+/// vertex, flip an edge whose opposite vertices are not joined. Open triangles are over openings;
+/// the others are the surface. Changes can be rolled back exactly.
 class SphereMesh {
 public:
   /// \param triangles closed, manifold, consistently oriented, at least 4 vertices a piece,
   ///                  indices in range; see MeshTopology::isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
+  SphereMesh() = default;
 
   /// Number of slots for triangles, used or freed by merge().
   Index size() const { return vertices_.count(); }
@@ -89,6 +91,19 @@ public:
     const Index end = vertex(triangle, (corner + 1) % 3);
     return (cornerOf(neighbor(triangle, corner), end) + 1) % 3;
   }
+  bool isUsed(Index slot) const { return vertex(slot, 0) >= 0; }
+  bool isOpen(Index triangle) const { return is_open_[triangle] != 0; }
+  void setOpen(Index triangle, bool is_open) { journal_.set(is_open_[triangle], is_open ? 1 : 0); }
+  /// The triangles of the surface, ascending.
+  std::vector<Index> surface() const;
+  /// Their corners.
+  Triangles surfaceTriangles() const;
+  std::size_t surfaceCount() const;
+  /// The vertices of the surface.
+  std::size_t surfaceVertexCount() const;
+  /// Number of handles of a mesh in one piece.
+  std::size_t genus() const;
+
   /// A triangle at the vertex; -1 if the vertex is not in the mesh.
   Index triangleAt(Index vertex) const { return triangle_at_[vertex]; }
   Index degree(Index vertex) const { return degree_[vertex]; }
@@ -132,11 +147,11 @@ public:
   }
 
   /// Splits a triangle in three by a vertex that is not in the mesh. The parts are the triangle
-  /// itself and two new ones; the new vertex is corner 0 of each.
+  /// itself and two new ones, open as it is; the new vertex is corner 0 of each.
   std::array<Index, 3> split(Index triangle, Index new_vertex);
 
   /// Removes a vertex of degree 3, unless the mesh is a tetrahedron. Returns the triangle that
-  /// replaces its three, or -1.
+  /// replaces its three, open if one of them is, or -1.
   Index merge(Index vertex);
 
   /// Replaces the side opposite to `corner` by the other diagonal of its diamond, if that is free.
@@ -148,7 +163,10 @@ public:
   /// Where moves are recorded. While they are, splits need slots freed by merge().
   Journal& journal() { return journal_; }
 
+  /// The corners of all triangles, in the order of their slots.
   Triangles triangles() const;
+  /// Turns the mesh inside out.
+  void turnOver();
 
 private:
   void setTriangle(Index t, const std::array<Index, 3>& vertices,
@@ -169,12 +187,24 @@ private:
 
   Indexed<std::array<Index, 3>> vertices_;   ///< -1 and the next free slot, if free
   Indexed<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
+  Indexed<Index> is_open_;                   ///< 1: the triangle is over an opening
   Indexed<Index> triangle_at_;
   Indexed<Index> degree_;
   Index free_ = -1;  ///< first free slot
   Index triangle_count_ = 0;
   Journal journal_;
 };
+
+/// Triangles around a vertex that follow each other, counter-clockwise.
+using Fan = std::vector<Index>;
+
+/// The fans at a vertex of the open triangles, or of those of the surface.
+///
+/// \param of_open which of them.
+std::vector<Fan> fansAt(const SphereMesh& mesh, Index v, bool of_open);
+
+/// The triangles around a vertex, counter-clockwise.
+Fan trianglesAround(const SphereMesh& mesh, Index v);
 
 /// Whether the side of a diamond may be replaced by the other diagonal: its ends are not joined
 /// already.

@@ -6,7 +6,10 @@
 #include "face_mesh.h"
 #include "filled_graph.h"
 #include "mesh_cleaning.h"
+#include "mesh_optimization.h"
+#include "open_mesh.h"
 #include "orientation.h"
+#include "smoothing.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "view_search.h"
@@ -25,19 +28,20 @@ namespace {
 constexpr double kSureGain = 2.1;
 constexpr double kMinGain = 0.05;
 
-/// The genus of a closed mesh in one piece over all vertices.
-std::size_t genusOf(const Triangles& closed, std::size_t vertices) {
-  return (columnCount(closed) + 4 - 2 * vertices) / 4;
-}
-
 /// A finished mesh and what it costs.
 struct Outcome {
   PartMesh part;
   std::size_t genus = 0;
-  std::size_t left_out = 0;  ///< points and triangles
-  double energy = 0.0;
+  std::size_t left_out = 0;      ///< points and triangles
+  std::optional<double> energy;  ///< if it was asked for
 
   std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
+};
+
+/// A closed mesh before the optimisation.
+struct Start {
+  SphereMesh mesh;
+  std::optional<double> energy;  ///< after flips, which are the first step of the optimisation
 };
 
 /// The ways to mesh a part: the rows of a table, in the order in which they are tried.
@@ -69,9 +73,8 @@ public:
       if (next && (!best_ || isBetter(*next, *best_)))
         best_ = std::move(next);
     }
-    best_->part.graph_genus = best_->genus;
-    if (options_.handles == HandleMode::None && hasSureHandles())
-      best_->part.graph_genus = facesGenus();
+    if (options_.handles == HandleMode::None && clock_.hasTimeAgain() && hasSureHandles())
+      best_->part.cut_handles = facesGenus();
     takeSphere();
     return std::move(*best_);
   }
@@ -80,7 +83,7 @@ private:
   bool mayHaveHandles() const {
     return options_.handles == HandleMode::Auto && !plan_.openings().isOneSided();
   }
-  std::size_t facesGenus() { return plan_.faces() != nullptr ? plan_.faces()->genus : 0; }
+  std::size_t facesGenus() { return plan_.faces() != nullptr ? plan_.faces()->genus() : 0; }
 
   /// Whether no triangles intersect, and nothing is left out.
   bool isSound() const {
@@ -89,35 +92,36 @@ private:
 
   /// Fewer intersections, then more points, then less energy. More handles must save energy, unless
   /// the faces show them.
-  bool isBetter(const Outcome& mesh, const Outcome& than) {
-    constexpr std::size_t few_of = 1000;
+  bool isBetter(Outcome& mesh, Outcome& than) {
+    constexpr double few_points = 0.001;
     if (mesh.intersecting() != than.intersecting())
       return mesh.intersecting() < than.intersecting();
     if (mesh.genus < than.genus)
       return !isBetter(than, mesh);
     if (mesh.genus == than.genus)
-      return std::pair(mesh.left_out, mesh.energy) < std::pair(than.left_out, than.energy);
-    const std::size_t few = graph_.size() / few_of;
+      return std::pair(mesh.left_out, energyOf(mesh)) < std::pair(than.left_out, energyOf(than));
+    const std::size_t few = fractionOf(few_points, graph_.size());
     if (mesh.left_out > than.left_out + few || than.left_out > mesh.left_out + few)
       return mesh.left_out < than.left_out;
     if (saveHandles())
-      return (1.0 - kMinGain) * mesh.energy < than.energy;
-    return mesh.left_out <= than.left_out && mesh.energy < (1.0 - kMinGain) * than.energy;
+      return (1.0 - kMinGain) * energyOf(mesh) < energyOf(than);
+    return mesh.left_out <= than.left_out && energyOf(mesh) < (1.0 - kMinGain) * energyOf(than);
   }
 
   // --- 1. The faces of the graph
 
   bool mayUseFaces() {
-    return (removesIntersections(options_) || mayHaveHandles()) && plan_.faces() != nullptr;
+    return (removesIntersections(options_) || mayHaveHandles()) && !isGiven(options_) &&
+           plan_.faces() != nullptr;
   }
 
   /// The triangles that are in no face of the graph, without those over openings, as a fraction.
   double defects() {
-    const auto& is_filling = plan_.faces()->is_filling;
-    auto filling = std::count(is_filling.begin(), is_filling.end(), std::uint8_t{1});
+    const SphereMesh& faces = *plan_.faces();
+    auto filling = static_cast<double>(faces.slotCount() - faces.surfaceCount());
     for (const Opening& opening : plan_.openings().embeddedOpenings().openings)
-      filling -= static_cast<std::ptrdiff_t>(opening.loop.size()) - 2;
-    return static_cast<double>(filling) / static_cast<double>(is_filling.size());
+      filling -= static_cast<double>(opening.loop.size()) - 2.0;
+    return filling / static_cast<double>(faces.slotCount());
   }
 
   /// Whether the faces close up with hardly a defect, or have handles that cost the sphere far more
@@ -132,7 +136,7 @@ private:
   bool saveHandles() {
     if (!save_handles_)
       save_handles_ =
-          facesGenus() > 0 && kSureGain * facesEnergy() < flippedEnergy(sphere());
+          facesGenus() > 0 && kSureGain * flippedEnergy(faces()) < flippedEnergy(sphere());
     return *save_handles_;
   }
 
@@ -142,22 +146,25 @@ private:
     return facesGenus() > 0 && defects() <= max_defects && saveHandles();
   }
 
-  Triangles allFaces(const FaceMesh& faces) {
-    return withAllNodes(points_, graph_, faces.triangles);
+  Start startOf(const SphereMesh& faces) const {
+    Start start{withAllNodes(points_, graph_, faces), {}};
+    Embedding none;
+    orientOutward(points_, start.mesh, none);
+    return start;
   }
 
-  double facesEnergy() {
-    if (!faces_energy_)
-      faces_energy_ = flippedEnergy(allFaces(*plan_.faces()));
-    return *faces_energy_;
+  Start& faces() {
+    if (!faces_)
+      faces_ = startOf(*plan_.faces());
+    return *faces_;
   }
 
   /// Whether a mesh of some energy after flips may be better than the best one.
-  bool mayHelp(double energy, std::size_t genus) const {
+  bool mayHelp(double energy, std::size_t genus) {
     // The optimisation hardly lowers the energy of a mesh that becomes sound.
     constexpr double max_energy = 1.05;
     const double most = genus == best_->genus ? max_energy : 1.0 - kMinGain;
-    return best_->intersecting() > 0 || energy < most * best_->energy;
+    return best_->intersecting() > 0 || energy < most * energyOf(*best_);
   }
 
   bool mayFacesHelp() {
@@ -167,12 +174,12 @@ private:
     constexpr double max_defects = 0.05;
     if (isSound() && (facesGenus() <= best_->genus || defects() > max_defects))
       return false;
-    return mayHelp(facesEnergy(), facesGenus());
+    return mayHelp(flippedEnergy(faces()), facesGenus());
   }
 
   std::optional<Outcome> meshFaces() {
     are_faces_tried_ = true;
-    return finished(allFaces(*plan_.faces()), {});
+    return finished(faces().mesh, {});
   }
 
   bool areHandlesDoubtful() {
@@ -181,13 +188,13 @@ private:
   }
 
   std::optional<Outcome> meshFacesWithoutHandles() {
-    const std::optional<FaceMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
+    const std::optional<SphereMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
     if (!faces)
       return std::nullopt;
-    const Triangles triangles = allFaces(*faces);
-    if (saveHandles() && !mayHelp(flippedEnergy(triangles), 0))
+    Start start = startOf(*faces);
+    if (saveHandles() && !mayHelp(flippedEnergy(start), 0))
       return std::nullopt;
-    return finished(triangles, {});
+    return finished(std::move(start.mesh), {});
   }
 
   // --- 2. The sphere
@@ -203,17 +210,19 @@ private:
       embedding = {};
     } else if (embedding.directions.cols() == 0) {
       embedding = embedding_.directions.cols() > 0 ? std::move(embedding_) : embeddingOf();
-      if (volumeSign(embedding.directions, best_->part.mesh.triangles) < 0)
+      if (volumeSign(embedding.directions, best_->part.mesh.triangles()) < 0)
         mirror(embedding);
     }
   }
 
-  const Triangles& sphere() {
+  Start& sphere() {
     if (!sphere_) {
       embedding_ = embeddingOf();
       clock_.begin("triangulation");
-      sphere_ = triangulateSphere(embedding_.directions, clock_.execution());
-      orientOutward(points_, *sphere_, embedding_);
+      SphereMesh mesh(triangulateSphere(embedding_.directions, clock_.execution()), graph_.size(),
+                      clock_.execution().threads);
+      orientOutward(points_, mesh, embedding_);
+      sphere_ = Start{std::move(mesh), {}};
     }
     return *sphere_;
   }
@@ -240,16 +249,15 @@ private:
   }
 
   std::optional<Outcome> meshSphere() {
-    const Triangles& triangles = sphere();
-    return finished(triangles, embedding_);
+    const SphereMesh& mesh = sphere().mesh;
+    return finished(mesh, embedding_);
   }
 
   // --- 3. All openings open
 
   bool mayOpenAll() {
-    // So many triangles of one are a tangle.
-    constexpr std::size_t tangle_of = 1000;
-    return (best_->intersecting() > 0 || tangle_of * best_->left_out > 2 * graph_.size()) &&
+    constexpr double few = 0.002;
+    return (best_->intersecting() > 0 || best_->left_out > fractionOf(few, graph_.size())) &&
            removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
            plan_.openings().fillsPossible();
   }
@@ -276,35 +284,43 @@ private:
     outcome.part.optimization = best_->part.optimization;
     if (!takeCertainFaces(points_, *plan_.faces(), clock_.execution(), outcome.part))
       return std::nullopt;
-    outcome.genus = plan_.faces()->genus;
+    outcome.genus = facesGenus();
     return outcome;
   }
 
   // --- What all of them need
 
-  double flippedEnergy(const Triangles& triangles) {
-    const Execution execution = clock_.limited();
-    clock_.begin("optimization");
-    return energyOf(flipMesh(points_, triangles, graph_,
-                             {plan_.openings().places(), false, options_.seed}, execution));
+  double flippedEnergy(Start& start) {
+    if (!start.energy) {
+      const Execution execution = clock_.limited();
+      clock_.begin("optimization");
+      start.mesh = flipMesh(points_, std::move(start.mesh), graph_,
+                            {plan_.openings().places(), false, options_.seed}, execution);
+      start.energy = energyOf(start.mesh);
+    }
+    return *start.energy;
   }
 
-  double energyOf(const Triangles& triangles) const {
-    return EnergyMesh(points_, triangles, graph_, 1, plan_.openings().places()).energy();
+  double energyOf(SphereMesh mesh) const {
+    return EnergyMesh(points_, std::move(mesh), graph_, 1, plan_.openings().places()).energy();
   }
 
-  /// Optimises, smooths, opens and cleans a mesh.
-  Outcome finished(Triangles triangles, Embedding embedding) {
+  double energyOf(Outcome& outcome) const {
+    if (!outcome.energy)  // without the slots of vertices that were taken out
+      outcome.energy = energyOf(SphereMesh(outcome.part.mesh.triangles(), graph_.size()));
+    return *outcome.energy;
+  }
+
+  Outcome finished(SphereMesh mesh, Embedding embedding) {
     Outcome outcome;
-    outcome.genus = genusOf(triangles, graph_.size());
+    outcome.genus = mesh.genus();
+    outcome.part.mesh = std::move(mesh);
     outcome.part.openings = plan_.openings();
     outcome.part.embedding = std::move(embedding);
-    finishMesh(points_, graph_, std::move(triangles), options_, clock_, outcome.part);
-    const Triangles surface = surfaceOf(outcome.part.mesh);
-    std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
-    sortUnique(vertices);
-    outcome.left_out = graph_.size() - vertices.size() + outcome.part.left_out_triangles;
-    outcome.energy = energyOf(outcome.part.mesh.triangles);
+    finishMesh(points_, graph_, options_, clock_, outcome.part);
+    const SphereMesh& finished = outcome.part.mesh;
+    outcome.left_out =
+        graph_.size() - finished.surfaceVertexCount() + outcome.part.left_out_triangles;
     return outcome;
   }
 
@@ -316,48 +332,51 @@ private:
   std::optional<Outcome> best_;
   bool are_faces_tried_ = false;
   std::optional<bool> save_handles_;
-  std::optional<double> faces_energy_;  ///< after flips
-  std::optional<Triangles> sphere_;
+  std::optional<Start> faces_;
+  std::optional<Start> sphere_;
   Embedding embedding_;
 };
 
 }  // namespace
 
-void finishMesh(const Positions& points, const Graph& graph, Triangles triangles,
-                const Options& options, StageClock& clock, PartMesh& mesh) {
-  const OpenPlaces* const places = mesh.openings.places();
-  if (options.method == Method::Default) {
+void finishMesh(const Positions& points, const Graph& graph, const Options& options,
+                StageClock& clock, PartMesh& part) {
+  const OpenPlaces* const places = part.openings.places();
+  const bool is_smoothed = options.smoothing > 0;
+  const auto optimize = [&](const Positions& at, bool is_last) {
     Execution execution = clock.limited();
     // The other half is for the smoothed points, which get an optimisation of their own.
-    const bool is_smoothed = options.smoothing > 0;
-    if (is_smoothed && execution.time_limit)
+    if (!is_last && execution.time_limit)
       *execution.time_limit /= 2.0;
-    clock.begin("optimization");
     MeshOptimization optimized =
-        optimizeMesh(points, triangles, graph,
-                     OptimizationOptions{places, !is_smoothed, options.seed, clock.share()},
-                     execution);
-    triangles = std::move(optimized.triangles);
-    mesh.intersecting = std::move(optimized.intersecting);
-    mesh.optimization = optimized.report;
+        optimizeMesh(at, std::move(part.mesh), graph,
+                     OptimizationOptions{places, is_last, options.seed, clock.share()}, execution);
+    part.mesh = std::move(optimized.mesh);
+    part.intersecting = std::move(optimized.intersecting);
+    return optimized.report;
+  };
+  if (options.method == Method::Default) {
+    clock.begin("optimization");
+    part.optimization = optimize(points, !is_smoothed);
   }
-  if (options.smoothing > 0) {
-    const Execution execution = clock.limited();
+  if (is_smoothed) {
     clock.begin("smoothing");
-    mesh.smoothed = smoothMesh(points, triangles, graph, places,
-                               SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
-                               options.method == Method::Default, options.seed, execution);
-    triangles = mesh.smoothed.triangles;
-    mesh.optimization.is_out_of_time |= mesh.smoothed.is_out_of_time;
+    Smoothing smoothing =
+        smoothSurface(points, part.mesh.triangles(),
+                      {SmoothingMethod::Biharmonic, options.smoothing}, clock.execution().threads);
+    part.smoothed = std::move(smoothing.points);
+    part.smoothing = smoothing.report;
+    part.intersecting = findIntersections(
+        EnergyMesh(part.smoothed, part.mesh, graph, clock.execution().threads, places),
+        mostOfUsable(part.mesh.slotCount()), {});
+    if (!part.intersecting.pairs.empty() && options.method == Method::Default &&
+        optimize(part.smoothed, true).is_out_of_time)
+      part.optimization.is_out_of_time = true;
   }
   clock.begin("cleaning");
-  if (places != nullptr) {
-    mesh.mesh = openMesh(points, triangles, *places);
-  } else {
-    mesh.mesh.triangles = std::move(triangles);
-    mesh.mesh.is_open.assign(columnCount(mesh.mesh.triangles), 0);
-  }
-  cleanMesh(points, options, clock.execution(), mesh);
+  if (places != nullptr)
+    openMesh(points, *places, part.mesh);
+  cleanMesh(points, options, clock.execution(), part);
 }
 
 PartMesh meshByAttempts(const Positions& points, const Graph& graph, SurfacePlan plan,

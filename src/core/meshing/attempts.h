@@ -10,10 +10,9 @@ namespace spherical_param::internal {
 
 /// Optimises a closed mesh, smooths it if that is wanted, and opens and cleans it.
 ///
-/// \param triangles closed.
-/// \param mesh      with openings and embedding; receives the rest.
-void finishMesh(const Positions& points, const Graph& graph, Triangles triangles,
-                const Options& options, StageClock& clock, PartMesh& mesh);
+/// \param part with a closed mesh, the openings and the embedding; receives the rest.
+void finishMesh(const Positions& points, const Graph& graph, const Options& options,
+                StageClock& clock, PartMesh& part);
 
 /// Meshes a graph by Method::Default: tries one way after the other, the cheap ones first, until a
 /// mesh is accepted, or else takes the best one.

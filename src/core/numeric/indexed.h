@@ -10,6 +10,11 @@
 
 namespace spherical_param::internal {
 
+/// A fraction of a number of items, rounded down.
+inline std::size_t fractionOf(double fraction, std::size_t count) {
+  return static_cast<std::size_t>(fraction * static_cast<double>(count));
+}
+
 /// A vector with an entry for each vertex or triangle, which Index numbers.
 template <typename T>
 class Indexed : public std::vector<T> {

@@ -28,7 +28,7 @@ int processorCount();
 /// \throw InvalidInput if a number of threads is out of range.
 void checkThreads(int requested);
 
-/// Number of threads that pays for a number of items.
+/// Number of threads that are worth their start for a number of items.
 ///
 /// \param requested 0: one for each processor.
 /// \param threshold minimum number of items for several threads.

@@ -42,21 +42,4 @@ std::vector<Index> shortestPaths(Index source, Indexed<double>& lengths,
   return reached;
 }
 
-/// Collects a node and those within a number of steps of it, nearest first, as far as they are not
-/// in a set, which they are put into.
-///
-/// \param disc receives them; its memory is used again.
-template <typename Graph>
-void collectDisc(Index center, Index steps, const Graph& graph, IndexSet& seen,
-                 std::vector<Index>& disc) {
-  disc.assign(1, center);
-  seen.insert(center);
-  std::size_t begin = 0;
-  for (Index step = 0; step < steps; ++step)
-    for (const std::size_t end = disc.size(); begin < end; ++begin)
-      for (const Index w : graph.row(disc[begin]))
-        if (seen.insert(w))
-          disc.push_back(w);
-}
-
 }  // namespace spherical_param::internal

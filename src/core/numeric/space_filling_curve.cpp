@@ -27,17 +27,17 @@ std::vector<Index> orderOf(const Indexed<Place>& places) {
   return order;
 }
 
-/// Sorts points that crowd in one cell along the curve of their own box, and so on: the sides of
-/// the box lie in different cells, so that each crowd is smaller than the one before it.
+/// Sorts points in one cell along the curve of their own box, and so on: the sides of
+/// the box lie in different cells, so that each cluster is smaller than the one before it.
 ///
 /// Without, 200,000 points within 1e-6 on the sphere take 25 times as long to insert.
-void refineCrowds(const Positions& points, Place* begin, Place* end) {
-  constexpr std::ptrdiff_t crowd = 16;
+void refineClusters(const Positions& points, Place* begin, Place* end) {
+  constexpr std::ptrdiff_t few = 16;
   for (Place* rest = begin; begin != end; begin = rest) {
     rest = std::find_if(begin, end, [&](const Place& place) { return place.key != begin->key; });
     Eigen::Vector3d low = points.col(begin->index);
     Eigen::Vector3d high = low;
-    if (rest - begin <= crowd)
+    if (rest - begin <= few)
       continue;
     for (const Place* place = begin; place != rest; ++place) {
       low = low.cwiseMin(points.col(place->index));
@@ -51,7 +51,7 @@ void refineCrowds(const Positions& points, Place* begin, Place* end) {
     std::sort(begin, rest, [](const Place& a, const Place& b) {
       return a.key != b.key ? a.key < b.key : a.index < b.index;
     });
-    refineCrowds(points, begin, rest);
+    refineClusters(points, begin, rest);
   }
 }
 
@@ -95,7 +95,7 @@ std::vector<Index> insertionOrder(const Positions& directions) {
       --round;
     return round << 60U | curve.key(directions.col(i)) >> 3U;
   });
-  refineCrowds(directions, places.data(), places.data() + places.size());
+  refineClusters(directions, places.data(), places.data() + places.size());
   return orderOf(places);
 }
 

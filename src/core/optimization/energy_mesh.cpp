@@ -13,10 +13,10 @@ namespace spherical_param::internal {
 
 namespace tuned = optimization_constants;
 
-EnergyMesh::EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                       int threads, const OpenPlaces* openings, const FractionReport& report)
-    : points_(&points), graph_(graph), threads_(threadCount(threads, columnCount(triangles))),
-      mesh_(triangles, columnCount(points), threads_), facets_(columnCount(triangles)) {
+EnergyMesh::EnergyMesh(const Positions& points, SphereMesh mesh, const Graph& graph, int threads,
+                       const OpenPlaces* openings, const FractionReport& report)
+    : points_(&points), graph_(graph), threads_(threadCount(threads, mesh.slotCount())),
+      mesh_(std::move(mesh)), facets_(mesh_.slotCount()) {
   const double lengths = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph.lengths.size());
@@ -49,8 +49,8 @@ void EnergyMesh::setPoints(const Positions& points) {
   updateAll();
 }
 
-void EnergyMesh::reset(const Triangles& triangles) {
-  mesh_ = SphereMesh(triangles, columnCount(*points_), threads_);
+void EnergyMesh::reset(SphereMesh mesh) {
+  mesh_ = std::move(mesh);
   updateAll();
 }
 
@@ -201,7 +201,7 @@ IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report) {
   Indexed<Index> surface;
   for (Index t = 0; t < mesh.mesh().size(); ++t)
-    if (!mesh.facet(t).isOpen())
+    if (!mesh.facet(t).is_open)
       surface.push_back(t);
   const Triangles triangles = mesh.mesh().triangles()(Eigen::all, surface);
   Execution execution;

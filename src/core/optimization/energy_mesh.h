@@ -23,7 +23,7 @@ public:
   ///
   /// \param graph    of the neighbours of each point.
   /// \param openings of the surface; nullptr: it is closed.
-  EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph, int threads,
+  EnergyMesh(const Positions& points, SphereMesh mesh, const Graph& graph, int threads,
              const OpenPlaces* openings = nullptr, const FractionReport& report = {});
 
   const SphereMesh& mesh() const { return mesh_; }
@@ -47,8 +47,8 @@ public:
   void setFlipRule(FlipRule rule) { may_flip_ = std::move(rule); }
   /// Other points, or other places of the openings.
   void setPoints(const Positions& points);
-  /// Other triangles, as many.
-  void reset(const Triangles& triangles);
+  /// Another mesh with as many triangles.
+  void reset(SphereMesh mesh);
 
   /// Gain of the flip of the side opposite to a corner, or `floor` if the gain is at most that.
   double flipGain(Index t, int corner, double floor) const;

@@ -16,7 +16,7 @@ void LocalUntangling::watch(const std::vector<Index>& vertices) {
   local_.begin(mesh_.mesh().slotCount());
   for (const Index v : vertices)
     mesh_.mesh().forEachAround(v, [&](Index t, int) {
-      if (!mesh_.facet(t).isOpen() && !local_.contains(t))
+      if (!mesh_.facet(t).is_open && !local_.contains(t))
         local_.set(face(t));
     });
 }
@@ -39,7 +39,7 @@ int LocalUntangling::flipChangedApart() {
     }
   std::vector<Index> bad;
   for (const Index t : changed) {
-    if (mesh_.facet(t).isOpen())
+    if (mesh_.facet(t).is_open)
       continue;
     const Face face_of_t = face(t);
     const std::size_t before = bad.size();
@@ -82,8 +82,8 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
     return std::nullopt;
   before -= intersect(local_.face(t), local_.face(o)) ? 1 : 0;
   const auto [a, b, c, d] = mesh.diamond(t, corner);
-  if (before + most < 0 || !isFree(mesh, {a, b, c, d}) || mesh_.facetOf(c, a, d).isOpen() ||
-      mesh_.facetOf(c, d, b).isOpen())
+  if (before + most < 0 || !isFree(mesh, {a, b, c, d}) || mesh_.facetOf(c, a, d).is_open ||
+      mesh_.facetOf(c, d, b).is_open)
     return std::nullopt;
   const Face cad = face(t, {c, a, d});
   const Face cdb = face(o, {c, d, b});

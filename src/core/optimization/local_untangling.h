@@ -31,7 +31,7 @@ public:
   /// how many pairs the number has changed since then; pairs of unwatched triangles count as new.
   int flipChangedApart();
 
-  /// No flips after this much more work: each leaves fewer pairs, but of a crowd they are many.
+  /// No flips after this much more work: each leaves fewer pairs, but there may be many.
   void limitWork(std::size_t most) { max_work_ = work_ + most; }
   /// Searches so far [vertices taken out and put back in the same time].
   std::size_t work() const { return work_; }

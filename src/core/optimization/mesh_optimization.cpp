@@ -1,9 +1,9 @@
 #include "mesh_optimization.h"
 
-#include "open_mesh.h"
 #include "optimization_constants.h"
 #include "parallel.h"
 #include "sampling_analysis.h"
+#include "smoothing.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
@@ -138,13 +138,13 @@ std::vector<std::array<Index, 2>> foldedEdges(const EnergyMesh& of) {
 bool unfold(Workbench& bench) {
   auto folded = foldedEdges(bench.mesh);
   for (int round = 0; round < tuned::kMaxUnfoldingRounds && !folded.empty() &&
-                      bench.mayRepair(tuned::kUnfoldingDivisor);
+                      bench.mayRepair(tuned::kUnfoldingWork);
        ++round) {
     for (std::size_t i = 0; i < folded.size(); ++i) {
       bench.reportItem(i, folded.size(), 16);
       const auto& [v, w] = folded[i];
       for (std::size_t size = tuned::kMinRuin; size <= 8 * tuned::kMinRuin; size *= 2)
-        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingDivisor))
+        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingWork))
           bench.tryPart({v, w}, size, isGain);
     }
     folded = foldedEdges(bench.mesh);
@@ -264,14 +264,14 @@ IntersectingPairs untangleSurface(Workbench& bench, IntersectingPairs pairs, int
 }
 
 /// Goes back to the mesh before the polish if fewer of its triangles intersect.
-void rollBackPolish(Workbench& bench, const Triangles& unpolished, IntersectingPairs& found) {
-  const Triangles polished = bench.mesh.mesh().triangles();
-  bench.mesh.reset(unpolished);
+void rollBackPolish(Workbench& bench, SphereMesh unpolished, IntersectingPairs& found) {
+  SphereMesh polished = bench.mesh.mesh();
+  bench.mesh.reset(std::move(unpolished));
   IntersectingPairs before = bench.findIntersections();
   if (before.areFewerThan(found))
     found = std::move(before);
   else
-    bench.mesh.reset(polished);
+    bench.mesh.reset(std::move(polished));
 }
 
 /// From the first flips to the polish, on the points of the bench. Returns the intersections.
@@ -284,7 +284,7 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
     if (found.is_sample)
       return found;
   }
-  const Triangles unpolished = bench.mesh.mesh().triangles();
+  SphereMesh unpolished = bench.mesh.mesh();
   // Without repairs afterwards, most of what the polish moves intersects.
   const bool is_polished = bench.mayRepair();
   if (is_polished) {
@@ -298,7 +298,7 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
   IntersectingPairs found =
       untangleSurface(bench, bench.findIntersections(), tuned::kMaxRoundsByEnergy);
   if (is_polished && !found.pairs.empty())
-    rollBackPolish(bench, unpolished, found);
+    rollBackPolish(bench, std::move(unpolished), found);
   return found;
 }
 
@@ -318,21 +318,16 @@ IntersectingPairs finishOn(const Positions& points, Workbench& bench) {
 
 }  // namespace
 
-Triangles flipMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                   const OptimizationOptions& options, const Execution& execution) {
-  Workbench bench(points, triangles, graph, options, execution);
+SphereMesh flipMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
+                    const OptimizationOptions& options, const Execution& execution) {
+  Workbench bench(points, std::move(mesh), graph, options, execution);
   flipFor(bench, isEven(points, graph, execution.threads), tuned::kMu);
-  return bench.mesh.mesh().triangles();
+  return bench.mesh.mesh();
 }
 
-MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
-                              const Graph& graph, const OptimizationOptions& options,
-                              const Execution& execution) {
-  const MeshTopology topology = checkTopology(triangles, graph.size(), execution.threads);
-  if (!topology.closed || !topology.isSurface())
-    throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
-                       "oriented mesh in one piece over all points");
-  Workbench bench(points, triangles, graph, options, execution);
+MeshOptimization optimizeMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
+                              const OptimizationOptions& options, const Execution& execution) {
+  Workbench bench(points, std::move(mesh), graph, options, execution);
   const bool is_even = isEven(points, graph, execution.threads);
   const auto flip = [&] {
     flipFor(bench, is_even, tuned::kMu);
@@ -356,26 +351,8 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
   result.intersecting = optimize(bench, is_even, std::move(rough));
   if (bench.log.is_noisy && options.finish_on_points)
     result.intersecting = finishOn(points, bench);
-  result.triangles = bench.mesh.mesh().triangles();
+  result.mesh = bench.mesh.mesh();
   result.report = bench.log;
-  return result;
-}
-
-SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const OpenPlaces* openings, const SmoothingOptions& options, bool optimizes,
-                        std::uint32_t seed, const Execution& execution) {
-  const TimeLeft time_left(execution.time_limit);
-  Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
-  SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
-  const EnergyMesh mesh(result.points, triangles, graph, execution.threads, openings);
-  if (optimizes && !findIntersections(mesh, 1, {}).pairs.empty()) {
-    Execution rest = execution;
-    rest.time_limit = time_left();
-    MeshOptimization outcome =
-        optimizeMesh(result.points, triangles, graph, {openings, true, seed}, rest);
-    result.triangles = std::move(outcome.triangles);
-    result.is_out_of_time = outcome.report.is_out_of_time;
-  }
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include "graph.h"
 #include "intersecting_pairs.h"
 #include "open_places.h"
-#include "smoothing.h"
+#include "sphere_mesh.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
@@ -32,7 +32,7 @@ struct OptimizationReport {
 
 /// An optimised mesh.
 struct MeshOptimization {
-  Triangles triangles;  ///< 3 x m, as many as before
+  SphereMesh mesh;
   /// On the given points; if noisy and without OptimizationOptions::finish_on_points, on the
   /// smoothed ones. A sample if the mesh is a tangle.
   IntersectingPairs intersecting;
@@ -65,8 +65,7 @@ struct MeshOptimization {
 /// oriented and of the same genus, whatever the arithmetic.
 ///
 /// \param points    3 x n, finite, distinct, of an extent about 1.
-/// \param triangles 3 x (2n - 4 + 4 genus), over all points; closed, manifold, oriented, in one
-///                  piece.
+/// \param mesh      in one piece over all points.
 /// \param graph     n nodes, the neighbours of each point.
 /// \param options openings, seed
 /// \param execution threads, progress, time limit
@@ -75,37 +74,15 @@ struct MeshOptimization {
 ///
 /// Not guaranteed: a mesh without intersections; the minimum of the energy.
 /// Cost: O(n log n); the work of repairs is limited in proportion to n.
-MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
-                              const Graph& graph, const OptimizationOptions& options = {},
+MeshOptimization optimizeMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
+                              const OptimizationOptions& options = {},
                               const Execution& execution = {});
 
 /// The first step of optimizeMesh() alone: flips the edge that gains most, until none gains.
 ///
-/// \param points, triangles, graph, options, execution as there.
+/// \param points, mesh, graph, options, execution as there.
 /// \return the mesh.
-Triangles flipMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                   const OptimizationOptions& options, const Execution& execution);
-
-/// A mesh and smoothed positions of its points.
-struct SmoothedMesh {
-  Triangles triangles;          ///< optimised on the smoothed points
-  Positions points;             ///< 3 x n
-  SmoothingReport report;       ///< displacements, volumes
-  bool is_out_of_time = false;  ///< the time limit ended the optimisation early
-};
-
-/// Smooths the points and, if wanted, optimises the mesh on the smoothed points if triangles
-/// intersect. Smoothing again with the better mesh gains nothing: on 26 clouds and 26
-/// noisy clouds, three rounds leave 55,682 self-intersections after 10 steps of smoothing, one
-/// round 49,997.
-///
-/// \param graph     of the points.
-/// \param openings  of the surface; nullptr: it is closed.
-/// \param optimizes whether the mesh is optimised.
-/// \param seed      of the optimisation.
-/// \param execution threads, progress
-SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const OpenPlaces* openings, const SmoothingOptions& options, bool optimizes,
-                        std::uint32_t seed, const Execution& execution);
+SphereMesh flipMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
+                    const OptimizationOptions& options, const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -74,9 +74,9 @@ constexpr std::size_t kMaxWork = 40000;
 /// take 21 s and 25 s instead of 38 s and 41 s, and 104 of these parts have faults instead of 101;
 /// without the least share 18 s and 23 s, and 105.
 constexpr std::size_t kMinWork = 2000;
-/// Unfolding may take the work divided by this: what folds many times would leave nothing for the
-/// rest. With 4, a tube from a bad start keeps its spikes.
-constexpr std::size_t kUnfoldingDivisor = 2;
+/// Fraction of the work that unfolding may take: what folds many times would leave nothing for the
+/// rest. With 0.25, a tube from a bad start keeps its spikes.
+constexpr double kUnfoldingWork = 0.5;
 
 // --- Untangling ----------------------------------------------------------------------------------
 

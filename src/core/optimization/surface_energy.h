@@ -16,14 +16,12 @@ namespace spherical_param::internal {
 /// Data of a triangle for the energy.
 struct Facet {
   Eigen::Vector3d normal;  ///< of unit length; 0 for a triangle without area
-  double radius;           ///< min(R, 4 * longest side), with the circumradius R; < 0: open
-
-  /// Whether the triangle is over an opening of the surface.
-  bool isOpen() const { return radius < 0.0; }
+  double radius;           ///< min(R, 4 * longest side), with the circumradius R; half if open
+  bool is_open;            ///< the triangle is over an opening of the surface
 
   /// Cosine of the angle between two normals; 1 at an open triangle, which does not bend.
   static double cosine(const Facet& a, const Facet& b) {
-    return a.isOpen() || b.isOpen() ? 1.0 : a.normal.dot(b.normal);
+    return a.is_open || b.is_open ? 1.0 : a.normal.dot(b.normal);
   }
 };
 
@@ -32,6 +30,7 @@ struct RawFacet {
   Eigen::Vector3d normal;
   double twice_area;
   double radius;
+  bool is_open = false;
 
   RawFacet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
     const Eigen::Vector3d ab = b - a;
@@ -46,15 +45,17 @@ struct RawFacet {
       radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
   }
 
-  bool isOpen() const { return radius < 0.0; }
   /// Makes it an open triangle, at half of the cost: in full, the RMS of clouds with holes rises by
   /// 1 %.
-  void open() { radius *= -0.5; }
+  void open() {
+    is_open = true;
+    radius *= 0.5;
+  }
 
   Facet facet() const {
     if (!(twice_area > 0.0))
-      return {Eigen::Vector3d::Zero(), radius};
-    return {normal / twice_area, radius};
+      return {Eigen::Vector3d::Zero(), radius, is_open};
+    return {normal / twice_area, radius, is_open};
   }
 };
 
@@ -92,13 +93,13 @@ struct SurfaceEnergy {
   const OpenPlaces* openings = nullptr;
 
   /// Cost of a triangle.
-  double cost(double radius) const { return mu * std::abs(radius); }
+  double cost(double radius) const { return mu * radius; }
 
   /// Cost of the edge from vertex v at p to vertex w at q, with its triangles.
   double edge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
               const Facet& facet, const Facet& other) const {
-    if (facet.isOpen() || other.isOpen())
-      return openEdge(v, w, p, q, facet.isOpen() && other.isOpen());
+    if (facet.is_open || other.is_open)
+      return openEdge(v, w, p, q, facet.is_open && other.is_open);
     const double length = (p - q).norm();
     const double angle = fastAcos(facet.normal.dot(other.normal));
     if (bend == Bend::Angle)

@@ -3,14 +3,16 @@
 #include "optimization_constants.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spherical_param::internal {
 
-Workbench::Workbench(const Positions& points, const Triangles& triangles, const Graph& graph,
+Workbench::Workbench(const Positions& points, SphereMesh start, const Graph& graph,
                      const OptimizationOptions& options, const Execution& execution)
     : report(reportOf(execution, "optimization")),
       openings(options.openings != nullptr ? std::optional(*options.openings) : std::nullopt),
-      mesh(points, triangles, graph, execution.threads, openings ? &*openings : nullptr, report),
+      mesh(points, std::move(start), graph, execution.threads, openings ? &*openings : nullptr,
+           report),
       flips(mesh), ruins(mesh, flips, options.seed), local(mesh), time_left_(execution.time_limit) {
   namespace tuned = optimization_constants;
   const auto of_part =
@@ -37,8 +39,8 @@ bool Workbench::isOutOfTime() {
   return log.is_out_of_time;
 }
 
-bool Workbench::mayRepair(std::size_t divisor) {
-  return work() < first_work_ + max_work_ / divisor && !isOutOfTime();
+bool Workbench::mayRepair(double fraction) {
+  return work() < first_work_ + fractionOf(fraction, max_work_) && !isOutOfTime();
 }
 
 void Workbench::renewWork() {

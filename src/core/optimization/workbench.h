@@ -18,7 +18,7 @@ namespace spherical_param::internal {
 /// What the phases of an optimisation share: the mesh, its moves, the limits.
 class Workbench {
 public:
-  Workbench(const Positions& points, const Triangles& triangles, const Graph& graph,
+  Workbench(const Positions& points, SphereMesh start, const Graph& graph,
             const OptimizationOptions& options, const Execution& execution);
   Workbench(const Workbench&) = delete;
   Workbench& operator=(const Workbench&) = delete;
@@ -40,8 +40,8 @@ public:
   bool isOutOfTime();
   /// Whether even the first flips have to end.
   bool isOverdue() const { return time_left_(-kGrace) == 0.0; }
-  /// Whether time is left for repairs, and some of their work divided by a number.
-  bool mayRepair(std::size_t divisor = 1);
+  /// Whether time is left for repairs, and some of a fraction of their work.
+  bool mayRepair(double fraction = 1.0);
   /// Allows as much work again as at the beginning.
   void renewWork();
   /// Ruins and recreates a part around some vertices, if work is left. Returns whether it was

@@ -2,7 +2,6 @@
 
 #include "boundary_loops.h"
 #include "corner_table.h"
-#include "progress.h"
 #include "rotation_system.h"
 #include "sphere_mesh.h"
 #include "spherical_param/mesh_topology.h"
@@ -10,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <queue>
 #include <tuple>
@@ -33,13 +33,35 @@ Triangles matrixOf(const TriangleList& list) {
   return triangles;
 }
 
-/// The keys of the edges of a mesh.
-using EdgeSet = std::unordered_set<std::uint64_t>;
-
 std::uint64_t keyOf(Index v, Index w) {
   const auto [low, high] = std::minmax(v, w);
   return static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high);
 }
+
+/// The edges of a mesh, and those that are added to it.
+class Edges {
+public:
+  /// \param are_joined whether the mesh has an edge between two vertices.
+  explicit Edges(std::function<bool(Index, Index)> are_joined)
+      : are_joined_(std::move(are_joined)) {}
+
+  bool contains(Index v, Index w) const {
+    return added_.count(keyOf(v, w)) > 0 || are_joined_(v, w);
+  }
+  /// Returns whether the edge is new.
+  bool add(Index v, Index w) { return !are_joined_(v, w) && added_.insert(keyOf(v, w)).second; }
+  void remove(Index v, Index w) { added_.erase(keyOf(v, w)); }
+
+private:
+  std::function<bool(Index, Index)> are_joined_;
+  std::unordered_set<std::uint64_t> added_;
+};
+
+/// Triangles, and for each of them whether it is in no face of the graph.
+struct Faces {
+  Triangles triangles;
+  Indexed<char> is_filling;
+};
 
 /// Cuts a polygon into triangles, ear by ear, the shortest new edge first, none of which is there
 /// already.
@@ -47,7 +69,7 @@ std::uint64_t keyOf(Index v, Index w) {
 /// \param loop of the polygon, counter-clockwise, each vertex once.
 /// \param edges of the mesh; receives the new ones.
 /// \return whether that was possible. If not, nothing has changed.
-bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, EdgeSet& edges,
+bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, Edges& edges,
                       TriangleList& triangles) {
   const std::size_t count = loop.size();
   std::vector<std::size_t> next(count);
@@ -72,7 +94,7 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
     if (is_cut[tip] != 0 || previous[tip] != before || next[tip] != after)
       continue;
     const bool is_last = found.size() + 3 == count;
-    if (!is_last && !edges.insert(keyOf(loop[before], loop[after])).second)
+    if (!is_last && !edges.add(loop[before], loop[after]))
       continue;
     found.push_back({loop[before], loop[tip], loop[after]});
     is_cut[tip] = 1;
@@ -83,20 +105,20 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
   }
   if (found.size() + 2 < count) {
     for (const auto& [before, tip, after] : found)
-      edges.erase(keyOf(before, after));
+      edges.remove(before, after);
     return false;
   }
   triangles.insert(triangles.end(), found.begin(), found.end());
   return true;
 }
 
-/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times the
-/// angles there, and the longest sides. None of the new edges is there already.
+/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times
+/// the angles there, and the longest sides. None of the new edges is there already.
 ///
 /// \param loop, edges, triangles as for cutIntoTriangles().
 /// \param beyond unit normals of the triangles beyond the sides of the loop.
 bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
-                   const std::vector<Eigen::Vector3d>& beyond, EdgeSet& edges,
+                   const std::vector<Eigen::Vector3d>& beyond, Edges& edges,
                    TriangleList& triangles) {
   constexpr double none = std::numeric_limits<double>::infinity();
   constexpr double mu = 0.3;
@@ -123,8 +145,8 @@ bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
   for (Index steps = 2; steps < n; ++steps)
     for (Index i = 0; i + steps < n; ++i) {
       const Index j = i + steps;
-      if (steps + 1 < n && edges.count(keyOf(loop[static_cast<std::size_t>(i)],
-                                             loop[static_cast<std::size_t>(j)])) > 0)
+      if (steps + 1 < n &&
+          edges.contains(loop[static_cast<std::size_t>(i)], loop[static_cast<std::size_t>(j)]))
         continue;
       const Eigen::Vector3d p = point(i);
       const Eigen::Vector3d edge = point(j) - p;
@@ -157,21 +179,17 @@ bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
     const Index k = best(i, j).tip;
     const auto node = [&](Index at) { return loop[static_cast<std::size_t>(at)]; };
     triangles.push_back({node(i), node(k), node(j)});
-    edges.insert(keyOf(node(i), node(j)));
+    edges.add(node(i), node(j));
     due.insert(due.end(), {{i, k}, {k, j}});
   }
   return true;
 }
 
 /// The triangles of the faces.
-TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation) {
+Faces facesOf(const Positions& points, const RotationSystem& rotation) {
   TriangleList triangles;
-  EdgeSet edges;
   const NeighborRows& graph = rotation.edges();
-  for (const Index v : graph.nodes())
-    for (const Index w : graph.row(v))
-      if (v < w)
-        edges.insert(keyOf(v, w));
+  Edges edges([&](Index v, Index w) { return graph.row(v).contains(w); });
   const NeighborRows faces = rotation.faces(3, 0.0);
   for (const Index i : faces.nodes()) {
     const std::vector<Index> face(faces.row(i).begin(), faces.row(i).end());
@@ -180,7 +198,7 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
     if (face.size() <= kMaxCorners && nodes.size() == face.size())
       cutIntoTriangles(points, face, edges, triangles);
   }
-  return triangles;
+  return {matrixOf(triangles), Indexed<char>(triangles.size(), 0)};
 }
 
 /// The triangles around a vertex that follow each other, but those that are dropped, in fans; some
@@ -205,19 +223,25 @@ Indexed<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable
 
 /// Leaves the triangles that meet a condition.
 template <typename Condition>
-Triangles filtered(const Triangles& triangles, const Condition& stays) {
+Faces filtered(const Faces& faces, const Condition& stays) {
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    if (stays(t))
+  Faces rest;
+  for (Eigen::Index t = 0; t < faces.triangles.cols(); ++t)
+    if (stays(t)) {
       kept.push_back(t);
-  return triangles(Eigen::all, kept);
+      rest.is_filling.push_back(faces.is_filling[t]);
+    }
+  rest.triangles = faces.triangles(Eigen::all, kept);
+  return rest;
 }
 
 /// Leaves the largest fan of each vertex.
-Triangles withoutPinches(const Triangles& triangles, std::size_t vertices) {
+Faces withoutPinches(const Faces& faces, std::size_t vertices) {
+  const Triangles& triangles = faces.triangles;
   const CornerTable corners(triangles, vertices, 1);
   Indexed<char> is_dropped(columnCount(triangles), 0);
-  for (Indexed<Index> due = firstIndices(vertices); !due.empty();) {
+  for (std::vector<Index> due = checkTopology(triangles, vertices, 1).nonmanifold_vertices;
+       !due.empty();) {
     std::vector<Index> dropped;
     for (const Index v : due) {
       const auto fans = fansAt(triangles, corners, is_dropped, v);
@@ -232,44 +256,50 @@ Triangles withoutPinches(const Triangles& triangles, std::size_t vertices) {
     }
     sortUnique(due);
   }
-  return filtered(triangles, [&](Eigen::Index t) { return is_dropped[t] == 0; });
+  return filtered(faces, [&](Eigen::Index t) { return is_dropped[t] == 0; });
 }
 
 /// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
-Triangles closed(const Positions& points, const Triangles& open) {
+Faces closed(const Positions& points, const Faces& faces) {
+  // The time for the best triangles grows with the cube of a loop.
+  constexpr std::size_t max_loop = 150;
+  const Triangles& open = faces.triangles;
   const std::size_t vertices = columnCount(points);
   const CornerTable corners(open, vertices, 1);
   UnionFind pieces = piecesOf(open, vertices);
-  EdgeSet edges;
-  for (const auto& t : open.colwise())
-    for (Eigen::Index k = 0; k < 3; ++k)
-      edges.insert(keyOf(t[k], t[(k + 1) % 3]));
+  Edges edges([&](Index v, Index w) {
+    bool are_joined = false;
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      are_joined = are_joined || open(nextCorner(k), t) == w || open(previousCorner(k), t) == w;
+    });
+    return are_joined;
+  });
+  /// The normal of the triangle that has an edge in this direction.
+  const auto normal_at = [&](Index v, Index w) {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      if (open(nextCorner(k), t) == w)
+        normal = areaNormal(points, open, t).normalized();
+    });
+    return normal;
+  };
   TriangleList fillings;
   Indexed<char> is_left_out(vertices, 0);
-  // Its time grows with the cube of a loop.
-  constexpr std::size_t most = 150;
   for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
+    std::vector<Eigen::Vector3d> beyond;
     std::reverse(loop.begin(), loop.end());
-    const auto normals = [&] {
-      std::vector<Eigen::Vector3d> beyond;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Index v = loop[i];
-        const Index w = loop[(i + 1) % loop.size()];
-        corners.forEachCorner(w, [&](Index t, Index k) {
-          if (open(nextCorner(k), t) == v)
-            beyond.push_back(areaNormal(points, open, t).normalized());
-        });
-      }
-      return beyond;
-    };
-    const bool is_wide = loop.size() > 3 && loop.size() <= most;
-    if (!(is_wide && cutIntoSmooth(points, loop, normals(), edges, fillings)) &&
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      beyond.push_back(normal_at(loop[(i + 1) % loop.size()], loop[i]));
+    if (!(loop.size() <= max_loop && cutIntoSmooth(points, loop, beyond, edges, fillings)) &&
         !cutIntoTriangles(points, loop, edges, fillings))
       is_left_out[pieces.find(loop.front())] = 1;
   }
-  Triangles all(3, open.cols() + static_cast<Eigen::Index>(fillings.size()));
-  all << open, matrixOf(fillings);
-  return filtered(all, [&](Eigen::Index t) { return is_left_out[pieces.find(all(0, t))] == 0; });
+  Faces all{Triangles(3, open.cols() + static_cast<Eigen::Index>(fillings.size())),
+            faces.is_filling};
+  all.triangles << open, matrixOf(fillings);
+  all.is_filling.resize(columnCount(all.triangles), 1);
+  return filtered(
+      all, [&](Eigen::Index t) { return is_left_out[pieces.find(all.triangles(0, t))] == 0; });
 }
 
 /// A tube between two triangles.
@@ -306,7 +336,8 @@ Tube shortestTube(const Positions& points, const Triangles& spheres, const Corne
 
 /// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
 /// edges first. Returns the piece with the most vertices.
-Triangles joined(const Positions& points, const Graph& graph, const Triangles& spheres) {
+Faces joined(const Positions& points, const Graph& graph, const Faces& closed) {
+  const Triangles& spheres = closed.triangles;
   UnionFind pieces = piecesOf(spheres, graph.size());
   const CornerTable corners(spheres, graph.size(), 1);
   std::vector<std::tuple<double, Index, Index>> edges;
@@ -334,14 +365,17 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
       triangles.push_back({tube.rims[i], tube.rims[j + 3], tube.rims[i + 3]});
     }
   }
+  Indexed<char> is_filling(triangles.size(), 1);
   const Indexed<Index> sizes = sizesOf(spheres, graph.size(), pieces);
   const auto largest =
       static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   for (Eigen::Index t = 0; t < spheres.cols(); ++t)
-    if (is_taken[t] == 0)
+    if (is_taken[t] == 0) {
       triangles.push_back({spheres(0, t), spheres(1, t), spheres(2, t)});
-  const Triangles all = matrixOf(triangles);
-  return filtered(all, [&](Eigen::Index t) { return pieces.find(all(0, t)) == largest; });
+      is_filling.push_back(closed.is_filling[t]);
+    }
+  const Faces all{matrixOf(triangles), std::move(is_filling)};
+  return filtered(all, [&](Eigen::Index t) { return pieces.find(all.triangles(0, t)) == largest; });
 }
 
 /// A region of a closed mesh that grows triangle by triangle, those with short sides first, and
@@ -456,54 +490,45 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 }
 
 /// Closes a mesh of faces.
-///
-/// \param faces certain triangles; others fill.
-std::optional<FaceMesh> meshOf(const Positions& points, const Graph& graph, const Triangles& open,
-                               TriangleList& faces) {
-  FaceMesh mesh;
-  mesh.triangles = joined(points, graph, closed(points, withoutPinches(open, graph.size())));
+std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, const Faces& open) {
+  const Faces faces = joined(points, graph, closed(points, withoutPinches(open, graph.size())));
   // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
-  if (mesh.triangles.cols() < 4)
+  if (faces.triangles.cols() < 4)
     return std::nullopt;
-  mesh.genus = static_cast<std::size_t>(*checkTopology(mesh.triangles, graph.size()).genus);
-  std::sort(faces.begin(), faces.end());
-  for (const auto& t : mesh.triangles.colwise())
-    mesh.is_filling.push_back(
-        std::binary_search(faces.begin(), faces.end(), std::array<Index, 3>{t[0], t[1], t[2]}) ? 0
-                                                                                               : 1);
+  SphereMesh mesh(faces.triangles, graph.size());
+  for (Index t = 0; t < mesh.size(); ++t)
+    mesh.setOpen(t, faces.is_filling[t] != 0);
   return mesh;
 }
 
 }  // namespace
 
-std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph,
-                                  const RotationSystem& rotation) {
-  TriangleList found = trianglesOf(points, rotation);
-  return meshOf(points, graph, matrixOf(found), found);
+std::optional<SphereMesh> meshFaces(const Positions& points, const Graph& graph,
+                                    const RotationSystem& rotation) {
+  return meshOf(points, graph, facesOf(points, rotation));
 }
 
-std::optional<FaceMesh> withoutHandles(const Positions& points, const Graph& graph,
-                                       FaceMesh mesh) {
-  while (mesh.genus > 0) {
-    const SphereMesh whole(mesh.triangles, graph.size());
-    PlanarRegion region(points, whole);
+std::optional<SphereMesh> withoutHandles(const Positions& points, const Graph& graph,
+                                         SphereMesh mesh) {
+  while (mesh.genus() > 0) {
+    PlanarRegion region(points, mesh);
     region.grow(0);
-    TriangleList faces;
-    for (Index t = 0; t < whole.size(); ++t)
-      if (mesh.is_filling[t] == 0)
-        faces.push_back(whole.vertices(t));
-    const auto stays = [&](Eigen::Index t) { return region.contains(t); };
-    std::optional<FaceMesh> rest =
-        meshOf(points, graph, filtered(mesh.triangles, stays), faces);
-    if (!rest || rest->genus >= mesh.genus)
+    Faces faces{mesh.triangles(), {}};
+    for (Index t = 0; t < mesh.size(); ++t)
+      faces.is_filling.push_back(mesh.isOpen(t) ? 1 : 0);
+    std::optional<SphereMesh> rest =
+        meshOf(points, graph, filtered(faces, [&](Eigen::Index t) { return region.contains(t); }));
+    if (!rest || rest->genus() >= mesh.genus())
       return std::nullopt;
     mesh = std::move(*rest);
   }
   return mesh;
 }
 
-Triangles withAllNodes(const Positions& points, const Graph& graph, const Triangles& closed) {
-  SphereMesh mesh(closed, graph.size());
+SphereMesh withAllNodes(const Positions& points, const Graph& graph, const SphereMesh& faces) {
+  SphereMesh mesh = faces;
+  for (Index t = 0; t < mesh.size(); ++t)
+    mesh.setOpen(t, false);
   Indexed<Index> due = firstIndices(graph.size());
   for (Index i = 0; i < due.count(); ++i) {
     const Index v = due[i];
@@ -514,7 +539,7 @@ Triangles withAllNodes(const Positions& points, const Graph& graph, const Triang
       if (mesh.triangleAt(w) < 0)
         due.push_back(w);
   }
-  return mesh.triangles();
+  return mesh;
 }
 
 }  // namespace spherical_param::internal

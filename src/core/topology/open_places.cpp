@@ -61,4 +61,28 @@ bool OpenPlaces::isRim(Index a, Index b) const {
   return std::binary_search(rim_edges_.begin(), rim_edges_.end(), edge);
 }
 
+std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
+  const auto is_open = [&](Index t) { return openings.isOpen(mesh.vertices(t)); };
+  std::vector<Index> found;
+  IndexSet seen(mesh.slotCount());
+  for (Index first = 0; first < mesh.size(); ++first) {
+    if (!is_open(first) || !seen.insert(first))
+      continue;
+    std::vector<Index> piece{first};
+    bool has_loop = false;
+    for (std::size_t head = 0; head < piece.size(); ++head)
+      for (int k = 0; k < 3; ++k) {
+        const Index t = piece[head];
+        const Index next = mesh.neighbor(t, k);
+        const auto [v, w] = mesh.side(t, k);
+        has_loop = has_loop || openings.isRim(v, w);
+        if (is_open(next) && seen.insert(next))
+          piece.push_back(next);
+      }
+    if (!has_loop)
+      found.insert(found.end(), piece.begin(), piece.end());
+  }
+  return found;
+}
+
 }  // namespace spherical_param::internal

@@ -2,6 +2,7 @@
 
 #include "indexed.h"
 #include "openings.h"
+#include "sphere_mesh.h"
 #include "spherical_param/types.h"
 
 #include <array>
@@ -31,6 +32,10 @@ public:
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
+  bool isOpen(const std::array<Index, 3>& corners) const {
+    return isOpen(corners[0], corners[1], corners[2]);
+  }
+
   /// Excludes some vertices that are not in a loop: their triangles are surface. Returns whether
   /// that changes anything.
   bool close(const std::vector<Index>& vertices);
@@ -47,5 +52,8 @@ private:
   Indexed<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };
+
+/// Open triangles that others do not connect to a loop: they are part of the surface.
+std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);
 
 }  // namespace spherical_param::internal

@@ -49,21 +49,19 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
   const FractionReport report = reportOf(execution, "quality");
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
-  SurfaceDiagnosis diagnosis =
-      diagnoseSurface(points, triangles, graph.graph, graph.bridges, finished.openings,
-                      of_diagnosis, options.threads);
+  SurfaceDiagnosis diagnosis = diagnoseSurface(points, triangles, graph.graph, graph.bridges,
+                                               finished.openings, of_diagnosis, options.threads);
   diagnosis.is_one_sided = mesh.openings.isOneSided();
   diagnosis.is_on_lines = areOnLines(points, graph.graph);
   reportFraction(report, 0.5);
   Surface result = judge(std::move(finished), std::move(diagnosis), options);
   reportFraction(report, 0.8);
   result.left_out_triangles = mesh.left_out_triangles;
-  result.diagnosis.cut_handles = mesh.graph_genus - std::min(mesh.graph_genus, result.genus());
+  result.diagnosis.cut_handles = mesh.cut_handles;
   result.has_certain_triangles_only = mesh.has_certain_triangles_only;
   for (const StrayPoint& stray : graph.stray_points)
     result.outliers.push_back(stray.point);
-  if (options.smoothing > 0)
-    result.smoothing = mesh.smoothed.report;
+  result.smoothing = mesh.smoothing;
   // Added vertices have no place on the sphere.
   if (result.added_vertices == 0 && mesh.embedding.directions.cols() > 0) {
     if (options.details)

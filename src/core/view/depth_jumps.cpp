@@ -37,20 +37,20 @@ class Opener {
 public:
   Opener(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view)
       : points_(points), spacing_(spacing), view_(view),
-        mesh_(view.triangles, columnCount(points) + 1), is_open_(mesh_.slotCount(), 0) {
+        mesh_(view.triangles, columnCount(points) + 1) {
     limitSpacing();
   }
 
-  OpenMesh run(std::size_t min_points) {
+  SphereMesh run(std::size_t min_points) {
     for (Index t = 0; t < mesh_.size(); ++t)
-      is_open_[t] = isJumpAt(t, kRule) ? 1 : 0;
+      mesh_.setOpen(t, isJumpAt(t, kRule));
     closeAtLoose(min_points);
     releasePinches();
-    return {mesh_.triangles(), std::move(is_open_)};
+    return std::move(mesh_);
   }
 
 private:
-  bool isOpen(Index t) const { return is_open_[t] != 0; }
+  bool isOpen(Index t) const { return mesh_.isOpen(t); }
 
   /// Limits the spacing to that of a surface which the place sees at a flat angle: a false point
   /// between surfaces is far from all others, but not from their rays.
@@ -115,7 +115,7 @@ private:
 
   /// Judges the triangles of points in small pieces by the mild rule.
   void closeAtLoose(std::size_t min_points) {
-    UnionFind pieces = piecesOf(surfaceOf({view_.triangles, is_open_}), columnCount(points_));
+    UnionFind pieces = piecesOf(mesh_.surfaceTriangles(), columnCount(points_));
     const Partition partition(pieces);
     const auto is_loose = [&](Index v) {
       return v != view_.behind && partition.sizes[partition.of[v]] < min_points;
@@ -123,7 +123,7 @@ private:
     for (Index t = 0; t < mesh_.size(); ++t) {
       const auto& corners = mesh_.vertices(t);
       if (isOpen(t) && std::any_of(corners.begin(), corners.end(), is_loose))
-        is_open_[t] = isJumpAt(t, kMildRule) ? 1 : 0;
+        mesh_.setOpen(t, isJumpAt(t, kMildRule));
     }
   }
 
@@ -132,28 +132,28 @@ private:
     std::vector<Index> due(columnCount(points_));
     for (std::size_t i = 0; i < due.size(); ++i)
       due[i] = static_cast<Index>(due.size() - i) - 1;
-    Indexed<std::uint8_t> was_closed(is_open_.size(), 0);  // so that this ends
+    Indexed<std::uint8_t> was_closed(mesh_.slotCount(), 0);  // so that this ends
     while (!due.empty()) {
       const Index v = due.back();
       due.pop_back();
       if (mesh_.triangleAt(v) < 0)
         continue;
-      std::vector<Fan> fans = fansAt(mesh_, is_open_, v, false);
+      std::vector<Fan> fans = fansAt(mesh_, v, false);
       if (fans.size() < 2)
         continue;
       const Fan gap = narrowestGap(v, was_closed);
       for (const Index t : gap)
         was_closed[t] = 1;
-      set(gap, 0, due);
+      setOpen(gap, false, due);
       if (gap.empty())
         for (const Fan& fan : withoutLargest(std::move(fans)))
-          set(fan, 1, due);
+          setOpen(fan, true, due);
     }
   }
 
-  void set(const Fan& fan, std::uint8_t is_open, std::vector<Index>& due) {
+  void setOpen(const Fan& fan, bool is_open, std::vector<Index>& due) {
     for (const Index t : fan) {
-      is_open_[t] = is_open;
+      mesh_.setOpen(t, is_open);
       due.insert(due.end(), mesh_.vertices(t).begin(), mesh_.vertices(t).end());
       due.erase(std::remove(due.end() - 3, due.end(), view_.behind), due.end());
     }
@@ -163,7 +163,7 @@ private:
   Fan narrowestGap(Index v, const Indexed<std::uint8_t>& was_closed) const {
     Fan best;
     double least = std::numeric_limits<double>::infinity();
-    for (Fan& gap : fansAt(mesh_, is_open_, v, true)) {
+    for (Fan& gap : fansAt(mesh_, v, true)) {
       if (std::any_of(gap.begin(), gap.end(),
                       [&](Index t) { return was_closed[t] != 0 || isJumpAt(t, kMildRule); }))
         continue;
@@ -188,7 +188,6 @@ private:
   Indexed<double> spacing_;
   const ViewMesh& view_;
   SphereMesh mesh_;
-  Indexed<std::uint8_t> is_open_;
 };
 
 }  // namespace
@@ -204,19 +203,18 @@ Indexed<double> spacingOf(const Positions& points, const Execution& execution) {
   return spacing;
 }
 
-OpenMesh openJumps(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view,
-                   std::size_t min_points) {
+SphereMesh openJumps(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view,
+                     std::size_t min_points) {
   return Opener(points, spacing, view).run(min_points);
 }
 
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
-                          const ViewMesh& view, const GapLimits& most, OpenMesh& open) {
+                          const ViewMesh& view, const GapLimits& most, SphereMesh& mesh) {
   std::vector<Gap> filled;
-  const SphereMesh mesh(open.triangles, columnCount(points) + 1);
   IndexSet seen(mesh.slotCount());
   Indexed<Index> next(columnCount(points) + 1);  // around the gap
   for (Index first = 0; first < mesh.size(); ++first) {
-    if (open.is_open[first] == 0 || !seen.insert(first))
+    if (!mesh.isOpen(first) || !seen.insert(first))
       continue;
     Gap gap;
     gap.triangles.push_back(first);
@@ -228,7 +226,7 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
       for (int k = 0; k < 3; ++k) {
         is_behind = is_behind || mesh.vertex(t, k) == view.behind;
         const Index beyond = mesh.neighbor(t, k);
-        if (open.is_open[beyond] != 0) {
+        if (mesh.isOpen(beyond)) {
           if (seen.insert(beyond))
             gap.triangles.push_back(beyond);
           continue;
@@ -257,7 +255,7 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
     if (gap.loop.size() != edges || !(is_small || edges <= most.edges || gap.area <= most.area))
       continue;
     for (const Index t : gap.triangles)
-      open.is_open[t] = 0;
+      mesh.setOpen(t, false);
     if (!is_small)
       filled.push_back(std::move(gap));
   }

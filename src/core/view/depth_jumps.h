@@ -1,7 +1,7 @@
 #pragma once
 
 #include "indexed.h"
-#include "open_mesh.h"
+#include "sphere_mesh.h"
 #include "spherical_param/types.h"
 #include "view_mesh.h"
 
@@ -27,13 +27,13 @@ Indexed<double> spacingOf(const Positions& points, const Execution& execution);
 /// \param points  3 x n.
 /// \param spacing of the points, \see spacingOf.
 /// \param view    of these points.
-OpenMesh openJumps(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view,
-                   std::size_t min_points);
+SphereMesh openJumps(const Positions& points, const Indexed<double>& spacing, const ViewMesh& view,
+                     std::size_t min_points);
 
 /// A gap within a surface, and the triangles over it.
 struct Gap {
   std::vector<Index> loop;       ///< vertices around it
-  std::vector<Index> triangles;  ///< of the OpenMesh
+  std::vector<Index> triangles;  ///< over it
   double area = 0.0;             ///< length of the vector area of the loop
 };
 
@@ -48,6 +48,6 @@ struct GapLimits {
 ///
 /// \return those that are filled for their edges or area.
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
-                          const ViewMesh& view, const GapLimits& most, OpenMesh& open);
+                          const ViewMesh& view, const GapLimits& most, SphereMesh& mesh);
 
 }  // namespace spherical_param::internal

@@ -111,13 +111,13 @@ bool RayPattern::isSpreadFrom(const Eigen::Vector3d& place) const {
 
 /// The middle of the points with the least spacing.
 Eigen::Vector3d RayPattern::densest() const {
-  constexpr Eigen::Index part_of = 50;
+  constexpr double fraction = 0.02;
   std::vector<Index> order = firstIndices(columnCount(points_));
-  const Eigen::Index part = points_.cols() / part_of + 1;
-  std::partial_sort(order.begin(), order.begin() + part, order.end(), [&](Index a, Index b) {
-    return std::pair(spacing_[a], a) < std::pair(spacing_[b], b);
-  });
-  order.resize(static_cast<std::size_t>(part));
+  const std::size_t part = fractionOf(fraction, columnCount(points_)) + 1;
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(part), order.end(),
+      [&](Index a, Index b) { return std::pair(spacing_[a], a) < std::pair(spacing_[b], b); });
+  order.resize(part);
   return points_(Eigen::all, order).rowwise().mean();
 }
 

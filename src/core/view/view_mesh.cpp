@@ -201,12 +201,13 @@ ViewMesh triangulateView(const Positions& points, const Eigen::Vector3d& place,
     return {};
   // Distances of the points: so little that hardly a depth jump looks different.
   constexpr std::array<double, 3> moves = {0.001, 0.004, 0.016};
-  constexpr std::size_t hidden_of = 2000;
+  constexpr double max_hidden = 0.0005;
   ViewMesh best = triangulateAround(place, points, report);
   const double distance = (points.colwise() - place).colwise().norm().mean();
   const TangentBasis across = tangentBasis((points.rowwise().mean() - place).stableNormalized());
   for (const double move : moves) {
-    if (best.triangles.cols() > 0 && hidden_of * best.hidden.size() <= columnCount(points))
+    if (best.triangles.cols() > 0 &&
+        best.hidden.size() <= fractionOf(max_hidden, columnCount(points)))
       break;
     ViewMesh moved = triangulateAround(
         place + move * distance * (0.6 * across.col(0) + 0.8 * across.col(1)), points, report);
@@ -225,7 +226,8 @@ void flipInView(const Positions& points, ViewMesh& view, const Execution& execut
   for (const auto& t : view.triangles.colwise())
     lengths.push_back((all.col(t[0]) - all.col(t[1])).norm());
   graph.lengths.push_back(medianOf(lengths));
-  EnergyMesh mesh(all, view.triangles, graph, execution.threads);
+  EnergyMesh mesh(all, SphereMesh(view.triangles, columnCount(all), execution.threads), graph,
+                  execution.threads);
   const Signs signs(view.place, all);
   mesh.setFlipRule([&](const SphereMesh::Diamond& at) {
     const auto is_behind = [&](Index v) { return v == view.behind; };

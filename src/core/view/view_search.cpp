@@ -135,7 +135,7 @@ public:
         pattern_(points, makeNeighborSearch(points, execution)) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
-    // Smaller clouds are meshed so fast that a search does not pay.
+    // Smaller clouds are meshed so fast that a search takes longer.
     constexpr Eigen::Index min_of_sheet = 5000;
     constexpr Eigen::Index min_searched = 20000;
     reportFraction(report_, 0.0);
@@ -262,7 +262,7 @@ private:
 
 std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
                                   const Execution& execution) {
-  // Smaller clouds are meshed so fast that a look does not pay.
+  // Smaller clouds are meshed so fast that a look takes longer.
   constexpr Eigen::Index min_points = 1000;
   return points.cols() < min_points ? std::nullopt : Searcher(points, execution).run(viewpoint);
 }

@@ -9,7 +9,7 @@
 
 ``reconstruct`` makes a manifold triangle mesh through the points of a cloud, with the parts,
 openings and handles that it shows; with ``topology="sphere"`` one closed surface through every
-point. A mesh without handles has a map to the sphere. ``sphere_map`` makes that map one to one and
+point. A mesh without handles maps to the sphere: ``sphere_map`` makes a map that is one to one and
 of low distortion; ``remesh`` samples the surface anew by it, ``morph`` changes it into another:
 with ``handles="none"`` also of objects with handles, which are cut. ``texture_coordinates`` lays
 any mesh out in the plane. ``find_outliers`` finds points to leave out before, ``find_parts`` the

@@ -66,7 +66,7 @@ class SphereMap:
     directions: FloatArray  #: (v, 3) unit vectors: the map
     caps: FloatArray  #: (c, 3) unit vectors: vertices inside the openings; none of a closed mesh
     distortion: Distortion  #: of the map
-    before: Distortion  #: of the embedding that it was made from
+    before: Optional[Distortion]  #: of the embedding that was its start; None without one
     levels: tuple[SphereMapLevel, ...]  #: finest first
     colors: Optional[ByteArray] = None  #: (v, 3), if the points of the mesh had some
 
@@ -95,24 +95,24 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
     return Distortion(**fields)
 
 
-def _sphere(mesh: Result) -> FloatArray:
-    if mesh.added_vertices:
-        problem = 'vertices were added; give reconstruct() fill="flat", which adds none'
-    elif mesh.has_certain_triangles_only:
-        problem = 'it is a tangle; give reconstruct() topology="sphere", which maps it as it is'
-    elif mesh.sphere is None:
-        count = mesh.topology.genus or 0
-        what = f"has {count} handle{'s' * (count > 1)}" if count else "was glued from several"
-        problem = f'it {what}; give reconstruct() handles="none", which cuts them'
+def _start(mesh: Result, *, cuts_handles: bool = False) -> FloatArray:
+    """The embedding of a mesh that has a map to one sphere; (0, 3) without one."""
+    handles = mesh.topology.genus or 0
+    if mesh.has_certain_triangles_only:
+        problem = 'is a tangle; give reconstruct() topology="sphere", which maps it as it is'
+    elif mesh.topology.components > 1:
+        problem = f'is in {mesh.topology.components} pieces; give reconstruct() topology="sphere", which joins them'
+    elif handles and not cuts_handles:
+        problem = f"has {handles} handle{'s' * (handles > 1)}; give reconstruct() handles=\"none\", which cuts them"
     else:
-        return mesh.sphere
-    raise InvalidInput(f"the mesh has no map to one sphere: {problem}")
+        return np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
+    raise InvalidInput(f"the mesh has no map to one sphere: it {problem}")
 
 
 def _mesh(
     mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike], sphere: Optional[ArrayLike]
 ) -> tuple[FloatArray, IndexArray, FloatArray]:
-    """Vertices, triangles and directions of what a function was given."""
+    """Vertices, triangles and directions, or (0, 3), of what a function was given."""
     if isinstance(mesh, (Result, SphereMap)):
         if triangles is not None or sphere is not None:
             raise InvalidInput(
@@ -120,15 +120,13 @@ def _mesh(
             )
         if isinstance(mesh, SphereMap):
             return mesh.vertices, mesh.triangles, mesh.directions
-        return mesh.vertices, mesh.triangles, _sphere(mesh)
-    if triangles is None or sphere is None:
-        raise InvalidInput(
-            "points were given without triangles and sphere; give all three, or the Result of reconstruct()"
-        )
+        return mesh.vertices, mesh.triangles, _start(mesh)
+    if triangles is None:
+        raise InvalidInput("points were given without triangles; give both, or the Result of reconstruct()")
     return (
         arguments.positions("points", mesh),
         arguments.triangle_indices("triangles", triangles),
-        arguments.positions("sphere", sphere),
+        np.empty((0, 3)) if sphere is None else arguments.positions("sphere", sphere),
     )
 
 
@@ -142,14 +140,14 @@ def sphere_map(
     Parameters
     ----------
     mesh : Result, SphereMap, or array-like (v, 3)
-        A mesh of ``reconstruct``; or the points of one, with ``triangles`` and ``sphere``. One with handles needs
+        A mesh of ``reconstruct``; or the points of one, with ``triangles``. One with handles needs
         ``handles="none"`` of ``reconstruct``, which cuts them.
     triangles : array-like of integers, (m, 3)
         Manifold, oriented outward, of genus 0, in one piece, each point used; openings stay open on
         the sphere.
     sphere : array-like, (v, 3)
-        Unit vectors, the start. It gives the map its orientation in space, and may have flipped
-        triangles.
+        Unit vectors, the start: an embedding gives the map its orientation in space, and may have
+        flipped triangles. A ``Result`` has one with ``details=True``.
     area_weight : float, 0 to 1
         Of areas (1) against angles (0).
     sweeps : int, 0 to 1000
@@ -172,7 +170,8 @@ def sphere_map(
         )
     return SphereMap(
         vertices=points.copy(), triangles=indices.copy(), directions=fields["sphere"], caps=fields["caps"],
-        distortion=_distortion(fields["distortion"]), before=_distortion(fields["before"]),
+        distortion=_distortion(fields["distortion"]),
+        before=_distortion(fields["before"]) if len(start) else None,
         levels=tuple(SphereMapLevel(**level) for level in fields["levels"]),
         colors=mesh.colors if isinstance(mesh, (Result, SphereMap)) else None,
     )
@@ -187,16 +186,19 @@ def measure_map_distortion(
     Parameters
     ----------
     mesh, triangles, sphere
-        As for ``sphere_map``; any triangles, and unit vectors. A ``Result`` has the embedding.
+        As for ``sphere_map``; any triangles, and unit vectors. A ``Result`` has the embedding with
+        ``details=True`` or ``topology="sphere"``.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
 
     Raises
     ------
     InvalidInput
-        Sizes do not match, an index is out of range, or a number is not finite.
+        There is no embedding, sizes do not match, an index is out of range, or a number is not finite.
     """
     points, indices, directions = _mesh(mesh, triangles, sphere)
+    if len(directions) == 0:
+        raise InvalidInput("there is no sphere to measure; give unit vectors, or reconstruct() details=True")
     return _distortion(
         _core.measure_map_distortion(points, indices, directions, threads=arguments.thread_count(threads))
     )
@@ -358,7 +360,7 @@ def texture_coordinates(
     """
     if isinstance(mesh, Result):
         points = mesh.vertices
-        sphere = np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
+        sphere = _start(mesh, cuts_handles=True)
     elif isinstance(mesh, (SphereMap, Remeshed)):
         points, sphere = mesh.vertices, mesh.directions
     else:

@@ -17,7 +17,14 @@ OTHERS = (
         """What the columns of a text file are, from the first on, e.g. "x,y,z,-,red,green,blue"; "-"
         is left out. None: what the file says, or looks like.""",
     ),
-    ("details", "bool", False, "bool", "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``."),
+    (
+        "details",
+        "bool",
+        False,
+        "bool",
+        """Fill ``Result.sphere`` also where the mesh is made without it, ``Result.vertex_residuals`` and
+        ``Diagnosis.triangle_marks``.""",
+    ),
     (
         "progress",
         "Progress",

@@ -43,11 +43,10 @@ OPTIONS
     Returns
     -------
     Result or Results
-        Mesh and, without handles, its map to the sphere; ``verdict``, ``findings`` and
-        ``diagnosis`` say how far to trust them. Of several surfaces, and always with
-        ``parts="each"``, a tuple of results, the largest first, which is also the mesh of all;
-        parts that cannot be meshed are left out with a warning. ``topology="sphere"`` and the
-        other values of ``parts`` make one result.
+        The mesh; ``verdict``, ``findings`` and ``diagnosis`` say how far to trust it. Of several
+        surfaces, and always with ``parts="each"``, a tuple of results, the largest first, which is
+        also the mesh of all; parts that cannot be meshed are left out with a warning.
+        ``topology="sphere"`` and the other values of ``parts`` make one result.
 
     Raises
     ------

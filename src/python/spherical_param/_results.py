@@ -33,9 +33,8 @@ class TriangleMark(IntFlag):
     ========================================  ==================================================
     ``TriangleMark.SELF_INTERSECTION`` (1)    it intersects another triangle
     ``TriangleMark.FILLED_HOLE`` (2)          it is over an opening that is filled
-    ``TriangleMark.HANDLE`` (4)               it is at the torn edges of a handle
-    ``TriangleMark.PART_BRIDGE`` (8)          it is at a bridge between parts
-    ``TriangleMark.OUTSIDE_GRAPH`` (16)       an edge joins points that are not neighbours
+    ``TriangleMark.PART_BRIDGE`` (4)          it is at a bridge between parts
+    ``TriangleMark.OUTSIDE_GRAPH`` (8)        an edge joins points that are not neighbours
     ========================================  ==================================================
 
     ``mesh.triangles[mesh.diagnosis.triangle_marks & TriangleMark.FILLED_HOLE > 0]`` are those over
@@ -44,9 +43,8 @@ class TriangleMark(IntFlag):
 
     SELF_INTERSECTION = 1
     FILLED_HOLE = 2
-    HANDLE = 4
-    PART_BRIDGE = 8
-    OUTSIDE_GRAPH = 16
+    PART_BRIDGE = 4
+    OUTSIDE_GRAPH = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +94,7 @@ class OfCloud(MeshExport):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(Surface, OfCloud):
-    """A mesh through all points, closed or open, its quality, and its map to the sphere if it has
-    no handles.
+    """A mesh through all points, closed or open, its quality, and its map to the sphere.
 
     Vertices are the distinct finite points, in the order of the input, where consolidation and
     smoothing moved them, then ``added_vertices`` others; ``vertex_of_input`` and

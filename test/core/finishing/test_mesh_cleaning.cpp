@@ -11,14 +11,14 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   const Triangles triangles = triangulateSphere(points);
   points.col(200) *= -1.5;
   PartMesh mesh;
-  mesh.mesh = {triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
+  mesh.mesh = SphereMesh(triangles, 600);
   mesh.intersecting.pairs = findSelfIntersections(points, triangles);
   ASSERT_FALSE(mesh.intersecting.pairs.empty());
   // How many triangles are left out if no others intersect.
   const auto cleaned = [&](const Options& options) -> std::optional<std::size_t> {
     PartMesh result = mesh;
     cleanMesh(points, withTopology(options), {}, result);
-    const Triangles surface = internal::surfaceOf(result.mesh);
+    const Triangles surface = result.mesh.surfaceTriangles();
     EXPECT_EQ(findSelfIntersections(points, surface), result.intersecting.pairs);
     if (result.intersecting.pairs.empty())
       return result.left_out_triangles;
@@ -33,7 +33,7 @@ TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
   EXPECT_FALSE(cleaned({}));
   // What was counted before the points were smoothed is not what intersects now.
   mesh.optimization.is_out_of_time = false;
-  mesh.smoothed.points = points;
+  mesh.smoothed = points;
   mesh.intersecting = {};
   EXPECT_TRUE(cleaned({}));
 }

@@ -118,7 +118,7 @@ TEST(Attempts, AFalseHandleOfNoiseIsNotTakenWhereASphereIsSound) {
   const auto faces =
       meshFaces(points, graph, RotationSystem(points, graph, nodeSpacings(graph, 1), 1));
   ASSERT_TRUE(faces);
-  ASSERT_EQ(faces->genus, 1U);
+  ASSERT_EQ(faces->genus(), 1U);
   const Result result = reconstruct(points);
   EXPECT_TRUE(hasStage(result, "embedding"));
   expectSound(result.surface(), 0, 0);

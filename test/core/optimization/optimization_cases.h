@@ -65,7 +65,7 @@ inline std::vector<Case> roughCases() {
 }
 
 inline EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {
-  EnergyMesh mesh(of.points, of.triangles, of.graph, 1);
+  EnergyMesh mesh(of.points, SphereMesh(of.triangles, columnCount(of.points)), of.graph, 1);
   mesh.setEnergy(bend, mu);
   return mesh;
 }

@@ -8,13 +8,14 @@ namespace {
 
 MeshOptimization optimize(const Case& of, const OptimizationOptions& options = {},
                           const Execution& execution = {}) {
-  return optimizeMesh(of.points, of.triangles, of.graph, options, execution);
+  return optimizeMesh(of.points, SphereMesh(of.triangles, columnCount(of.points)), of.graph,
+                      options, execution);
 }
 
 /// What holds of every result.
 void expectGuarantees(const Case& of, const MeshOptimization& result) {
-  EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(of.points.cols())));
-  EXPECT_EQ(result.intersecting.pairs, findSelfIntersections(of.points, result.triangles));
+  EXPECT_TRUE(isSphereOverAll(result.mesh.triangles(), static_cast<Index>(of.points.cols())));
+  EXPECT_EQ(result.intersecting.pairs, findSelfIntersections(of.points, result.mesh.triangles()));
 }
 
 TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
@@ -26,8 +27,8 @@ TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
     // 12 edges of length 1 are bent by a right angle; the 12 cells^2 triangles have half a diagonal
     // of their cell as circumradius. 1e-6: acos near 1 is off by 1e-8, on flat edges of length 60.
     const double energy = 12.0 * kPi / 2.0 + 0.3 * 12.0 * cells * std::sqrt(0.5);
-    EXPECT_NEAR(energyOf(of.points, result.triangles), energy, 1e-6);
-    EXPECT_NEAR(std::abs(volumeOf(of.points, result.triangles)), 1.0, 1e-12);
+    EXPECT_NEAR(energyOf(of.points, result.mesh.triangles()), energy, 1e-6);
+    EXPECT_NEAR(std::abs(volumeOf(of.points, result.mesh.triangles())), 1.0, 1e-12);
     EXPECT_TRUE(result.intersecting.pairs.empty());
   };
   for (std::uint64_t seed = 0; seed < 20; ++seed)
@@ -45,9 +46,10 @@ TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
     expectGuarantees(of, result);
     EXPECT_TRUE(result.intersecting.pairs.empty());
     // Some diagonals of nearly square cells may be the other ones.
-    EXPECT_LE(energyOf(of.points, result.triangles), 1.01 * energyOf(of.points, hull.triangles));
+    EXPECT_LE(energyOf(of.points, result.mesh.triangles()),
+              1.01 * energyOf(of.points, hull.triangles));
     const double volume = volumeOf(of.points, hull.triangles);
-    EXPECT_NEAR(volumeOf(of.points, result.triangles), volume, 0.01 * volume);
+    EXPECT_NEAR(volumeOf(of.points, result.mesh.triangles()), volume, 0.01 * volume);
   }
 }
 
@@ -60,8 +62,8 @@ TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
   ASSERT_FALSE(result.report.is_noisy);
   const double least = energyOf(of.points, tube.triangles);
   EXPECT_GT(energyOf(of.points, of.triangles), 4.0 * least);
-  EXPECT_LT(energyOf(of.points, result.triangles), 1.1 * least);
-  EXPECT_LT(fractionBeyondTwoSteps(of.graph, result.triangles),
+  EXPECT_LT(energyOf(of.points, result.mesh.triangles()), 1.1 * least);
+  EXPECT_LT(fractionBeyondTwoSteps(of.graph, result.mesh.triangles()),
             0.2 * fractionBeyondTwoSteps(of.graph, of.triangles));
 }
 
@@ -78,7 +80,8 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   OptimizationOptions unfinished;
   unfinished.finish_on_points = false;
   const MeshOptimization result = optimize(noisy, unfinished);
-  EXPECT_NE(result.intersecting.pairs, findSelfIntersections(noisy.points, result.triangles));
+  EXPECT_NE(result.intersecting.pairs,
+            findSelfIntersections(noisy.points, result.mesh.triangles()));
 }
 
 TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {

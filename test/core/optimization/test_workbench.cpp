@@ -8,7 +8,7 @@ namespace {
 
 TEST(Workbench, RepairsUntilItsWorkIsDoneOrItsTimeIsOver) {
   const Case of = noisySphere(300, 0.5, 2);
-  Workbench bench(of.points, of.triangles, of.graph, {}, {});
+  Workbench bench(of.points, SphereMesh(of.triangles, 300), of.graph, {}, {});
   EXPECT_EQ(bench.findIntersections().pairs, findSelfIntersections(of.points, of.triangles));
   std::size_t tried = 0;
   for (; bench.mayRepair() && tried < 10000000; tried += 12) {
@@ -24,7 +24,7 @@ TEST(Workbench, RepairsUntilItsWorkIsDoneOrItsTimeIsOver) {
 
   Execution hasty;
   hasty.time_limit = 0.0;
-  Workbench late(of.points, of.triangles, of.graph, {}, hasty);
+  Workbench late(of.points, SphereMesh(of.triangles, 300), of.graph, {}, hasty);
   EXPECT_FALSE(late.tryPart({0}, 12, [](double) { return true; }));
   EXPECT_TRUE(late.log.is_out_of_time);
 }

@@ -1,7 +1,7 @@
 #include "paper_method.h"
 
-#include "core/embedding/embeddings.h"
 #include "core/graph/graph_helpers.h"
+#include "core/sphere/embeddings.h"
 #include "union_find.h"
 
 #include <tuple>

@@ -9,18 +9,18 @@
 namespace spherical_param::test {
 namespace {
 
-std::optional<FaceMesh> facesOf(const Positions& points, const Graph& graph) {
+std::optional<SphereMesh> facesOf(const Positions& points, const Graph& graph) {
   return meshFaces(points, graph, RotationSystem(points, graph, nodeSpacings(graph, 1), 1));
 }
 
 /// The mesh of the faces of a graph without handles, and of the other nodes.
 std::optional<Triangles> meshOf(const Positions& points, const Graph& graph) {
-  std::optional<FaceMesh> faces = facesOf(points, graph);
-  if (faces && faces->genus > 0)
+  std::optional<SphereMesh> faces = facesOf(points, graph);
+  if (faces && faces->genus() > 0)
     faces = withoutHandles(points, graph, *std::move(faces));
   if (!faces)
     return std::nullopt;
-  return withAllNodes(points, graph, faces->triangles);
+  return withAllNodes(points, graph, *faces).triangles();
 }
 
 std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
@@ -44,13 +44,13 @@ TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   const Graph graph = localDelaunayGraph(torus).graph;
   const auto whole = facesOf(torus, graph);
   ASSERT_TRUE(whole);
-  EXPECT_EQ(whole->genus, 1U);
-  EXPECT_TRUE(isSurfaceOverAll(whole->triangles, static_cast<Index>(torus.cols()), 1));
+  EXPECT_EQ(whole->genus(), 1U);
+  EXPECT_TRUE(isSurfaceOverAll(whole->triangles(), static_cast<Index>(torus.cols()), 1));
   const auto cut = meshOf(torus, graph);
   ASSERT_TRUE(cut);
   EXPECT_TRUE(isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
   // It is cut across the tube, of 16 points, or along it, of 40.
-  EXPECT_LE(countLost(whole->triangles, *cut), 4U * 40U);
+  EXPECT_LE(countLost(whole->triangles(), *cut), 4U * 40U);
 }
 
 TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
@@ -110,12 +110,11 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
   const Positions points = sphereWithHoles(1000, 1, 0.4);
   const auto mesh = facesOf(points, localDelaunayGraph(points).graph);
   ASSERT_TRUE(mesh);
-  ASSERT_EQ(mesh->is_filling.size(), columnCount(mesh->triangles));
   Index fillings = 0;
-  for (Eigen::Index t = 0; t < mesh->triangles.cols(); ++t)
-    if (mesh->is_filling[t] != 0) {
+  for (Index t = 0; t < mesh->size(); ++t)
+    if (mesh->isOpen(t)) {
       ++fillings;
-      for (const Index v : mesh->triangles.col(t))
+      for (const Index v : mesh->vertices(t))
         EXPECT_LT((points.col(v) - spiralSphere(1).col(0)).norm(), 0.6);
     }
   EXPECT_GT(fillings, 15);

@@ -14,24 +14,24 @@ ViewMesh fromOrigin(const Positions& points) {
   return view;
 }
 
-OpenMesh opened(const Positions& points, const ViewMesh& view) {
+SphereMesh opened(const Positions& points, const ViewMesh& view) {
   return openJumps(points, spacingOf(points, {}), view, 50);
 }
 
-MeshTopology topologyOf(const OpenMesh& mesh, const Positions& points) {
-  return checkTopology(surfaceOf(mesh), columnCount(points));
+MeshTopology topologyOf(const SphereMesh& mesh, const Positions& points) {
+  return checkTopology(mesh.surfaceTriangles(), columnCount(points));
 }
 
 TEST(DepthJumps, DivideABoxFromTheWallBehindIt) {
   const Positions points = depthImage(60, 40, boxBeforeWall);
-  const OpenMesh mesh = opened(points, fromOrigin(points));
+  const SphereMesh mesh = opened(points, fromOrigin(points));
   const MeshTopology topology = topologyOf(mesh, points);
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.oriented);
   EXPECT_TRUE(topology.unused_vertices.empty());
   EXPECT_EQ(topology.components, 2U);
   EXPECT_EQ(topology.boundary_loops, 3U);
-  const Triangles surface = surfaceOf(mesh);
+  const Triangles surface = mesh.surfaceTriangles();
   for (const auto& t : surface.colwise())
     EXPECT_EQ(points.row(2)(t).minCoeff(), points.row(2)(t).maxCoeff());
 }
@@ -48,9 +48,9 @@ TEST(DepthJumps, LeaveFalsePointsBetweenSurfacesOut) {
     const bool is_mixed = depth == 3.0 && boxBeforeWall(x - 0.0125, y) == 2.0;
     return is_mixed && std::fmod(std::abs(y) * 60.0, 4.0) < 1.0 ? 2.5 : depth;
   });
-  const OpenMesh mesh = opened(points, fromOrigin(points));
+  const SphereMesh mesh = opened(points, fromOrigin(points));
   EXPECT_EQ(topologyOf(mesh, points).components, 2U);
-  const Triangles surface = surfaceOf(mesh);
+  const Triangles surface = mesh.surfaceTriangles();
   for (const auto& t : surface.colwise())
     EXPECT_NE(points.row(2)(t).minCoeff() == 2.0 && points.row(2)(t).maxCoeff() == 3.0, true);
 }
@@ -69,15 +69,15 @@ TEST(DepthJumps, GapsAreFilledUpToASize) {
   const Positions points = all(Eigen::all, kept);
   const ViewMesh view = fromOrigin(points);
   const Indexed<double> spacing = spacingOf(points, {});
-  OpenMesh mesh = opened(points, view);
+  SphereMesh mesh = opened(points, view);
   EXPECT_TRUE(fillGaps(points, spacing, view, {8}, mesh).empty());
   EXPECT_EQ(topologyOf(mesh, points).boundary_loops, 2U);
-  OpenMesh by_area = mesh;
+  SphereMesh by_area = mesh;
   const std::vector<Gap> filled = fillGaps(points, spacing, view, {8, 100}, mesh);
   ASSERT_EQ(filled.size(), 1U);
   EXPECT_EQ(filled[0].triangles.size(), filled[0].loop.size() - 2);
-  EXPECT_NEAR(filled[0].area, surfaceArea(points, mesh.triangles(Eigen::all, filled[0].triangles)),
-              1e-9);
+  EXPECT_NEAR(filled[0].area,
+              surfaceArea(points, mesh.triangles()(Eigen::all, filled[0].triangles)), 1e-9);
   EXPECT_EQ(topologyOf(mesh, points).boundary_loops, 1U);
   EXPECT_EQ(fillGaps(points, spacing, view, {0, 0, 1.01 * filled[0].area}, by_area).size(), 1U);
 }

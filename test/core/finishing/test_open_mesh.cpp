@@ -8,14 +8,16 @@ namespace spherical_param::test {
 namespace {
 
 /// Opened within loops of a surface, of some point spacing; the graph has no edges.
-OpenMesh opened(const Positions& points, const Triangles& triangles, double spacing,
-                const std::vector<Index>& loop) {
+Triangles opened(const Positions& points, const Triangles& triangles, double spacing,
+                 const std::vector<Index>& loop) {
   Graph graph;
   graph.offsets.assign(columnCount(points) + 1, 0);
   Openings openings;
   openings.spacing.assign(columnCount(points), spacing);
   openings.openings.emplace_back().loop = loop;
-  return openMesh(points, triangles, OpenPlaces(points, graph, openings));
+  SphereMesh mesh(triangles, columnCount(points));
+  openMesh(points, OpenPlaces(points, graph, openings), mesh);
+  return mesh.surfaceTriangles();
 }
 
 /// A double pyramid over a ring of n points at z = 0, with tips n and n + 1.
@@ -40,8 +42,7 @@ TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
   DoublePyramid pyramid(4);
   pyramid.points.leftCols(4) << 1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0;
   pyramid.points.col(4) << 0.25, 0.25, -0.25;
-  const Triangles surface =
-      internal::surfaceOf(opened(pyramid.points, pyramid.triangles, 0.6, {0, 1, 2, 3, 4}));
+  const Triangles surface = opened(pyramid.points, pyramid.triangles, 0.6, {0, 1, 2, 3, 4});
   EXPECT_EQ(surface.cols(), 6);
   EXPECT_TRUE(findSelfIntersections(pyramid.points, surface).empty());
   const MeshTopology topology = checkTopology(surface, 6);
@@ -86,7 +87,7 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
     loop.push_back(v);
   const Triangles triangles =
       Eigen::Map<const Triangles>(all[0].data(), 3, static_cast<Eigen::Index>(all.size()));
-  const Triangles surface = internal::surfaceOf(opened(points, triangles, 1e-3, loop));
+  const Triangles surface = opened(points, triangles, 1e-3, loop);
   const MeshTopology topology = checkTopology(surface, columnCount(points));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.unused_vertices.empty());

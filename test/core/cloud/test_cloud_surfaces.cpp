@@ -1,7 +1,7 @@
 #include "cloud_surfaces.h"
 
+#include "core/graph/graph_helpers.h"
 #include "core/reconstructions.h"
-#include "graph_helpers.h"
 
 namespace spherical_param::test {
 namespace {

@@ -137,7 +137,7 @@ private:
     const Row<Index> used = usedOf(i);
     if (used.size() < kMinNeighbors)
       return 0.0;
-    std::vector<Index> around(used.begin(), used.end());  // the most crowded first
+    std::vector<Index> around(used.begin(), used.end());  // the densest first
     std::stable_sort(around.begin(), around.end(),
                      [&](Index j, Index k) { return mean_distance_[j] < mean_distance_[k]; });
     const double scale = mean_distance_[around[around.size() / 2]];

@@ -23,8 +23,8 @@ public:
               const Options& options, StageClock& clock);
 
   const OpenSurface& openings() const { return openings_; }
-  /// The closed mesh of the faces of the graph; nullptr if there is none.
-  const FaceMesh* faces();
+  /// \see meshFaces; nullptr if there is none.
+  const SphereMesh* faces();
 
 private:
   const Positions* points_ = nullptr;
@@ -32,7 +32,7 @@ private:
   OpenSurface openings_;
   std::optional<RotationSystem> rotation_;
   bool has_faces_ = false;
-  std::optional<FaceMesh> faces_;
+  std::optional<SphereMesh> faces_;
 };
 
 }  // namespace spherical_param::internal

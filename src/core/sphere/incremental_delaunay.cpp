@@ -213,16 +213,16 @@ using Coincidence = std::array<Index, 2>;
 /// triangles evenly.
 void putBeside(Indexed<Coincidence> coincidences, Triangulation& triangulation) {
   std::sort(coincidences.begin(), coincidences.end());
-  std::vector<Index> crowd;  // the vertices at one place
+  std::vector<Index> cluster;  // the vertices at one place
   std::size_t turn = 0;
   for (const auto& [anchor, p] : coincidences) {
-    if (crowd.empty() || crowd[0] != anchor) {
-      crowd.assign(1, anchor);
+    if (cluster.empty() || cluster[0] != anchor) {
+      cluster.assign(1, anchor);
       turn = 0;
     }
-    const Index v = crowd[turn++];
-    crowd.push_back(v);
-    crowd.push_back(p);
+    const Index v = cluster[turn++];
+    cluster.push_back(v);
+    cluster.push_back(p);
     triangulation.putBeside(v, p);
   }
 }

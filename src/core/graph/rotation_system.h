@@ -33,18 +33,6 @@ public:
 
   /// The neighbours of each node, counter-clockwise.
   const NeighborRows& edges() const { return edges_; }
-  /// Where v names w.
-  std::size_t entryOf(Index v, Index w) const;
-
-  /// Whether a node is on the left of a way through another one, seen from where its normal points.
-  bool isLeft(Index before, Index at, Index after, Index node) const;
-
-  /// Cosine between the normals of two nodes.
-  double cosine(Index v, Index w) const { return normals_.col(v).dot(normals_.col(w)); }
-  /// Whether the edge of v and w is longer than that of a and b; of two as long as each other, that
-  /// of the higher node.
-  bool isLonger(Index v, Index w, Index a, Index b) const;
-
   /// Leaves out the edges between opposite sheets.
   void separateOpposite();
   /// Whether an edge joins two sheets: it is steep to one of them, and their normals differ.
@@ -59,6 +47,13 @@ public:
   NeighborRows faces(std::size_t min_steps, double min_corner) const;
 
 private:
+  /// Where v names w.
+  std::size_t entryOf(Index v, Index w) const;
+  /// Cosine between the normals of two nodes.
+  double cosine(Index v, Index w) const { return normals_.col(v).dot(normals_.col(w)); }
+  /// Whether the edge of v and w is longer than that of a and b; of two as long as each other, that
+  /// of the higher node.
+  bool isLonger(Index v, Index w, Index a, Index b) const;
   template <typename Condition>
   void keepEdges(const Condition& meets);
   bool areOpposite(Index v, Index w) const;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "open_mesh.h"
+#include "sphere_mesh.h"
 #include "spherical_param/types.h"
 
 #include <array>
@@ -34,7 +34,7 @@ struct Removal {
 /// \return what was taken out; nothing if triangles still intersect.
 std::optional<Removal> clearIntersections(const Positions& points,
                                           const IntersectingTriangles& pairs, const Removal& most,
-                                          OpenMesh& mesh);
+                                          SphereMesh& mesh);
 
 /// Leaves out all triangles that intersect, those with the most intersections first; then the
 /// smaller fans at a vertex that has several, and pieces of fewer than 50 triangles, but the
@@ -44,6 +44,6 @@ std::optional<Removal> clearIntersections(const Positions& points,
 /// \param mesh  with at least one triangle that intersects none.
 /// \return the number of triangles that were left out because they intersect.
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
-                            OpenMesh& mesh);
+                            SphereMesh& mesh);
 
 }  // namespace spherical_param::internal

@@ -24,10 +24,10 @@ TEST(SurfacePlan, FacesHaveTheHandlesOfTheCloud) {
     const Graph graph = localDelaunayGraph(points).graph;
     SurfacePlan plan = planOf(points, graph, SurfaceMode::Auto);
     EXPECT_FALSE(plan.openings().isOpen());
-    const FaceMesh* faces = plan.faces();
+    const SphereMesh* faces = plan.faces();
     EXPECT_EQ(plan.faces(), faces);  // found once
     ASSERT_EQ(faces == nullptr, genus < 0);
-    EXPECT_TRUE(genus < 0 || isSurfaceOverAll(withAllNodes(points, graph, faces->triangles),
+    EXPECT_TRUE(genus < 0 || isSurfaceOverAll(withAllNodes(points, graph, *faces).triangles(),
                                               static_cast<Index>(points.cols()), genus));
   }
   EXPECT_EQ(SurfacePlan().faces(), nullptr);

@@ -1,6 +1,6 @@
 #include "local_intersections.h"
 
-#include "optimization_cases.h"
+#include "core/optimization/optimization_cases.h"
 #include "spherical_param/self_intersection.h"
 
 namespace spherical_param::test {

@@ -1,6 +1,6 @@
+#include "core/reconstructions.h"
 #include "depth_images.h"
 #include "open_shapes.h"
-#include "reconstructions.h"
 
 #include <limits>
 

@@ -1,56 +1,52 @@
 #include "intersection_removal.h"
 
-#include "optimization_cases.h"
+#include "core/optimization/optimization_cases.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 
 namespace spherical_param::test {
 namespace {
 
-OpenMesh closedMesh(const Triangles& triangles) {
-  return {triangles, Indexed<std::uint8_t>(columnCount(triangles), 0)};
-}
-
 /// Of a closed mesh, whose pairs are found before.
 std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
-                                          OpenMesh& mesh) {
-  return internal::clearIntersections(points, findSelfIntersections(points, mesh.triangles), most,
+                                          SphereMesh& mesh) {
+  return internal::clearIntersections(points, findSelfIntersections(points, mesh.triangles()), most,
                                       mesh);
 }
 
 /// A sphere with a vertex that was pulled through its middle, and out on the other side.
 struct Pierced {
-  Pierced() : mesh(closedMesh(triangulateSphere(points))) { points.col(200) *= -1.5; }
+  Pierced() : mesh(triangulateSphere(points), 400) { points.col(200) *= -1.5; }
 
   std::size_t intersections() const {
-    return findSelfIntersections(points, internal::surfaceOf(mesh)).size();
+    return findSelfIntersections(points, mesh.surfaceTriangles()).size();
   }
-  MeshTopology topology() const { return checkTopology(internal::surfaceOf(mesh), 400); }
+  MeshTopology topology() const { return checkTopology(mesh.surfaceTriangles(), 400); }
 
   Positions points = spiralSphere(400);
-  OpenMesh mesh;
+  SphereMesh mesh;
 };
 
 TEST(IntersectionRemoval, OtherTrianglesKeepEveryVertex) {
   const Case of = scrambledEllipsoid(300, 0.3, 100, 2);
   ASSERT_FALSE(findSelfIntersections(of.points, of.triangles).empty());
-  OpenMesh mesh = closedMesh(of.triangles);
+  SphereMesh mesh(of.triangles, 300);
   const std::optional<Removal> removal = clearIntersections(of.points, {20, 0}, mesh);
   ASSERT_TRUE(removal);
   EXPECT_EQ(removal->vertices + removal->triangles, 0U);
-  EXPECT_TRUE(isSphereOverAll(mesh.triangles, 300));
-  EXPECT_TRUE(findSelfIntersections(of.points, mesh.triangles).empty());
+  EXPECT_TRUE(isSphereOverAll(mesh.triangles(), 300));
+  EXPECT_TRUE(findSelfIntersections(of.points, mesh.triangles()).empty());
 }
 
 TEST(IntersectionRemoval, TakesOutAVertexOrTrianglesWithinItsLimits) {
   for (const Removal& most : {Removal{1, 0}, Removal{0, 20}, Removal{0, 0}}) {
     Pierced sphere;
     ASSERT_GT(sphere.intersections(), 0U);
-    const Triangles before = sphere.mesh.triangles;
+    const Triangles before = sphere.mesh.triangles();
     const std::optional<Removal> removal = clearIntersections(sphere.points, most, sphere.mesh);
     ASSERT_EQ(removal.has_value(), most.vertices + most.triangles > 0U);
     if (!removal) {
-      EXPECT_EQ(sphere.mesh.triangles, before);
+      EXPECT_EQ(sphere.mesh.triangles(), before);
       continue;
     }
     EXPECT_EQ(removal->vertices, most.vertices);
@@ -70,10 +66,10 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   // A third of the vertices are anywhere.
   Positions points = spiralSphere(600);
   points.rightCols(200) = randomCube(200, 1) * 0.2;
-  OpenMesh mesh = closedMesh(triangulateSphere(spiralSphere(600)));
+  SphereMesh mesh(triangulateSphere(spiralSphere(600)), 600);
   const std::size_t left_out =
-      leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
-  const Triangles surface = internal::surfaceOf(mesh);
+      leaveOutTangles(600, findSelfIntersections(points, mesh.triangles()), mesh);
+  const Triangles surface = mesh.surfaceTriangles();
   EXPECT_GT(left_out, 200U);
   EXPECT_LE(left_out + columnCount(surface), 1196U);
   EXPECT_TRUE(findSelfIntersections(points, surface).empty());
@@ -86,9 +82,9 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
 TEST(IntersectionRemoval, CountsWhatIsLeftOutBecauseItIntersects) {
   // Nothing hangs on what intersects at one vertex.
   Pierced sphere;
-  const auto pairs = findSelfIntersections(sphere.points, sphere.mesh.triangles);
+  const auto pairs = findSelfIntersections(sphere.points, sphere.mesh.triangles());
   const std::size_t left_out = leaveOutTangles(400, pairs, sphere.mesh);
-  EXPECT_EQ(left_out + surfaceCount(sphere.mesh), 796U);
+  EXPECT_EQ(left_out + sphere.mesh.surfaceCount(), 796U);
   EXPECT_GT(left_out, 0U);
   EXPECT_EQ(sphere.intersections(), 0U);
 }
@@ -99,16 +95,16 @@ TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
   // The number of triangles within a height of the pole, and of those that stay if they are a piece
   // of their own beside the rest of the sphere, or alone.
   const auto kept_of = [&](double height, bool is_alone) {
-    OpenMesh mesh = closedMesh(triangles);
+    SphereMesh mesh(triangles, 600);
     Index cap = 0;
-    for (Index t = 0; t < mesh.is_open.count(); ++t) {
+    for (Index t = 0; t < mesh.size(); ++t) {
       const double lowest = points(2, triangles.col(t)).minCoeff();
       cap += lowest > height ? 1 : 0;
-      mesh.is_open[t] = lowest <= height && (is_alone || lowest > height - 0.2) ? 1 : 0;
+      mesh.setOpen(t, lowest <= height && (is_alone || lowest > height - 0.2));
     }
-    const auto before = internal::surfaceOf(mesh).cols();
+    const auto before = static_cast<Eigen::Index>(mesh.surfaceCount());
     EXPECT_EQ(leaveOutTangles(600, {}, mesh), 0U);
-    return std::pair(cap, cap - (before - internal::surfaceOf(mesh).cols()));
+    return std::pair(cap, cap - (before - static_cast<Eigen::Index>(mesh.surfaceCount())));
   };
   const auto [small, kept_of_small] = kept_of(0.93, false);
   ASSERT_TRUE(small > 20 && small < 50) << small;

@@ -103,10 +103,10 @@ class PieceMaker {
 public:
   /// \param spacing of the nodes.
   PieceMaker(const OrderedPoints& nodes, const Indexed<double>& spacing, const ViewMesh& view,
-             const OpenMesh& open, const Options& options)
-      : nodes_(nodes), spacing_(spacing), view_(view), open_(open), options_(options),
-        piece_of_(numberPieces(surfaceOf(open), columnCount(nodes.points), options)),
-        vertex_of_node_(columnCount(nodes.points), -1), number_of_(open.is_open.size(), -1) {
+             const SphereMesh& mesh, const Options& options)
+      : nodes_(nodes), spacing_(spacing), view_(view), mesh_(mesh), options_(options),
+        piece_of_(numberPieces(mesh.surfaceTriangles(), columnCount(nodes.points), options)),
+        vertex_of_node_(columnCount(nodes.points), -1), number_of_(mesh.slotCount(), -1) {
     if (!piece_of_.empty())
       pieces_.resize(
           static_cast<std::size_t>(*std::max_element(piece_of_.begin(), piece_of_.end())) + 1);
@@ -140,7 +140,7 @@ private:
   /// Gives each input point to its piece, or to those that are left out.
   void sortPoints(const std::vector<Index>& inputs, LeftOut& left_out) {
     Indexed<std::uint8_t> has_triangle(piece_of_.size(), 0);
-    const Triangles surface = surfaceOf(open_);
+    const Triangles surface = mesh_.surfaceTriangles();
     for (const Index v : surface.reshaped())
       has_triangle[v] = 1;
     const auto reason = [&](Index node) -> std::vector<Index>& {
@@ -185,8 +185,8 @@ private:
   /// The triangles of the surfaces face the place; those around it outward.
   void makeTriangles() {
     std::vector<std::vector<Index>> corners(pieces_.size());
-    for (const Index t : trianglesOfSurface(open_)) {
-      const auto nodes = open_.triangles.col(t);
+    for (const Index t : mesh_.surface()) {
+      const auto nodes = mesh_.vertices(t);
       if (piece_of_[nodes[0]] < 0)
         continue;
       std::vector<Index>& all = corners[static_cast<std::size_t>(piece_of_[nodes[0]])];
@@ -194,7 +194,7 @@ private:
       for (const int k : {0, 2, 1})
         all.push_back(vertex_of_node_[nodes[k]]);
     }
-    const bool is_closed = surfaceCount(open_) == open_.is_open.size();
+    const bool is_closed = mesh_.surfaceCount() == mesh_.slotCount();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       FinishedMesh& mesh = pieces_[i].mesh;
       mesh.triangles = Eigen::Map<const Triangles>(
@@ -243,7 +243,7 @@ private:
   const OrderedPoints& nodes_;
   const Indexed<double>& spacing_;
   const ViewMesh& view_;
-  const OpenMesh& open_;
+  const SphereMesh& mesh_;
   const Options& options_;
   Indexed<Index> piece_of_;
   Indexed<Index> vertex_of_node_;
@@ -310,15 +310,15 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   const Positions& measured = is_grid ? flat : nodes.points;
   const Indexed<double> spacing =
       is_grid ? spacingOf(measured, clock.execution()) : std::move(view->spacing);
-  OpenMesh open =
+  SphereMesh mesh =
       openJumps(measured, spacing, view->mesh, static_cast<std::size_t>(options.min_points));
   // Of a depth image of 242,749 points 3,071 openings become 197, and its surfaces stay apart.
   constexpr std::size_t small_gap = 8;
   const GapLimits limits{options.surface == SurfaceMode::Open ? 0 : small_gap,
                          static_cast<std::size_t>(options.fill_holes),
                          std::ldexp(options.fill_holes_area, -2 * nodes.exponent)};
-  const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, open);
-  std::vector<ViewPiece> pieces = PieceMaker(nodes, spacing, view->mesh, open, options)
+  const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, mesh);
+  std::vector<ViewPiece> pieces = PieceMaker(nodes, spacing, view->mesh, mesh, options)
                                       .run(points, info.normals, inputs, filled, left_out);
   std::size_t meshed = 0;
   for (const ViewPiece& piece : pieces)

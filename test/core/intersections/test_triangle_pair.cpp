@@ -12,8 +12,8 @@ bool meet(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector
   const Positions points = horizontally(positionsOf(a), positionsOf(b));
   std::array<Index, 3> corners{3, 4, 5};
   const auto intersects = [&] {
-    const Face of_a = faceOf(points, 0x1p-70, {0, 1, 2}, 0);
-    const Face of_b = faceOf(points, 0x1p-70, corners, 1);
+    const Face of_a = internal::faceOf(points, 0x1p-70, {0, 1, 2}, 0);
+    const Face of_b = internal::faceOf(points, 0x1p-70, corners, 1);
     EXPECT_EQ(intersect(of_b, of_a), intersect(of_a, of_b));
     EXPECT_EQ(intersectExactly(of_a, of_b), intersect(of_a, of_b));
     return intersect(of_a, of_b);

@@ -26,22 +26,21 @@ constexpr int kMostTriangulations = 100000;
 /// What a change costs: by how many pairs their number grows, and the length of the new sides.
 using Cost = std::pair<int, double>;
 
-/// A closed mesh with openings, whose changes can be undone, and what intersects in it.
+/// A mesh whose changes can be undone, and what intersects in it.
 class Remover {
 public:
-  Remover(const Positions& points, const OpenMesh& mesh, std::vector<Index> intersecting)
-      : points_(points), mesh_(mesh.triangles, columnCount(points)), is_open_(mesh.is_open),
-        scale_(scaleToUnit(points.cwiseAbs().maxCoeff())), due_(std::move(intersecting)) {
+  Remover(const Positions& points, const SphereMesh& mesh, std::vector<Index> intersecting)
+      : points_(points), mesh_(mesh), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())),
+        due_(std::move(intersecting)) {
     Indexed<Face> faces;
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (!isOpen(t))
-        faces.push_back(face(t));
-    surface_.begin(is_open_.size(), std::move(faces));
+    for (const Index t : mesh_.surface())
+      faces.push_back(face(t));
+    surface_.begin(mesh_.slotCount(), std::move(faces));
   }
 
   /// \see clearIntersections
-  std::optional<Removal> run(const Removal& most, OpenMesh& result) {
-    const bool is_closed = std::count(is_open_.begin(), is_open_.end(), std::uint8_t{1}) == 0;
+  std::optional<Removal> run(const Removal& most, SphereMesh& result) {
+    const bool is_closed = mesh_.surfaceCount() == columnCount(mesh_.triangles());
     for (std::size_t next = 0; next < due_.size();) {
       const Index t = due_[next];
       const bool may_take = removal_.vertices < most.vertices;
@@ -52,16 +51,12 @@ public:
                !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
         return std::nullopt;
     }
-    result = {mesh_.triangles(), {}};
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (isUsed(t))
-        result.is_open.push_back(is_open_[t]);
+    result = std::move(mesh_);
     return removal_;
   }
 
 private:
-  bool isUsed(Index t) const { return mesh_.vertex(t, 0) >= 0; }
-  bool isOpen(Index t) const { return is_open_[t] != 0; }
+  bool isOpen(Index t) const { return mesh_.isOpen(t); }
   Face face(Index t) const { return faceOf(points_, scale_, mesh_.vertices(t), t); }
   bool intersects(Index t) const {
     return surface_.contains(t) && surface_.intersects(surface_.face(t));
@@ -72,23 +67,21 @@ private:
 
   void begin() {
     mesh_.journal().record();
-    before_.clear();
+    changed_.clear();
   }
   void commit() {
     mesh_.journal().commit();
-    for (const auto& [t, was_open] : before_)
+    for (const Index t : changed_)
       if (surface_.contains(t))
         due_.push_back(t);
   }
   void rollBack() {
     mesh_.journal().rollBack();
-    for (auto change = before_.rbegin(); change != before_.rend(); ++change) {
-      is_open_[change->first] = change->second;
-      update(change->first);
-    }
+    for (const Index t : changed_)
+      update(t);
   }
   void update(Index t) {
-    if (isUsed(t) && !isOpen(t))
+    if (mesh_.isUsed(t) && !isOpen(t))
       surface_.set(face(t));
     else if (surface_.contains(t))
       surface_.remove(t);
@@ -96,7 +89,7 @@ private:
   /// Takes a triangle that changes out of the surface; returns the number of others that it
   /// intersects.
   int lift(Index t) {
-    before_.emplace_back(t, is_open_[t]);
+    changed_.push_back(t);
     if (!surface_.contains(t))
       return 0;
     const int count = surface_.count(surface_.face(t), t);
@@ -221,14 +214,14 @@ private:
       order.emplace_back(-surface_.count(surface_.face(u), u), u);
     std::sort(order.begin(), order.end());
     for (const auto& [count, u] : order) {
-      is_open_[u] = 1;
+      mesh_.setOpen(u, true);
       const auto& corners = mesh_.vertices(u);
       if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return isOneFan(v); })) {
         surface_.remove(u);
         ++removal_.triangles;
         return true;
       }
-      is_open_[u] = 0;
+      mesh_.setOpen(u, false);
     }
     return false;
   }
@@ -284,11 +277,9 @@ private:
       const auto& corners = mesh_.vertices(ear);
       cost.first += lower(std::find(corners.begin(), corners.end(), v) == corners.end() ? ear : o);
     }
-    const bool is_open = mesh_.anyAround(v, [&](Index t, int) { return isOpen(t); });
     const Index merged = mesh_.merge(v);
     if (merged < 0)
       return std::nullopt;
-    is_open_[merged] = is_open ? 1 : 0;
     cost.first += lower(merged);
     return std::all_of(ring.begin(), ring.end(), [&](Index w) { return isOneFan(w); })
                ? std::optional(cost)
@@ -296,7 +287,7 @@ private:
   }
 
   /// Whether the surface around a vertex is one fan.
-  bool isOneFan(Index v) const { return fansAt(mesh_, is_open_, v, false).size() == 1; }
+  bool isOneFan(Index v) const { return fansAt(mesh_, v, false).size() == 1; }
 
   /// The triangle and corner of the side of a vertex to flip next: fewest intersections, then the
   /// shortest new side; -1 of none.
@@ -324,17 +315,16 @@ private:
 
   const Positions& points_;
   SphereMesh mesh_;
-  Indexed<std::uint8_t> is_open_;
-  double scale_;                                        ///< brings the coordinates to at most 1
-  LocalIntersections surface_;                          ///< its triangles
-  std::vector<std::pair<Index, std::uint8_t>> before_;  ///< what has changed, and was open
-  std::vector<Index> due_;                              ///< triangles that may intersect
+  double scale_;                ///< brings the coordinates to at most 1
+  LocalIntersections surface_;  ///< its triangles
+  std::vector<Index> changed_;  ///< since begin()
+  std::vector<Index> due_;      ///< triangles that may intersect
   int triangulations_ = 0;
   Removal removal_;
 };
 
 /// Leaves out what intersects, those with the most intersections first.
-void leaveOutIntersecting(const IntersectingTriangles& pairs, OpenMesh& mesh) {
+void leaveOutIntersecting(const IntersectingTriangles& pairs, SphereMesh& mesh) {
   std::map<Index, std::vector<Index>> others;
   for (const auto& [t, u] : pairs) {
     others[t].push_back(u);
@@ -347,49 +337,48 @@ void leaveOutIntersecting(const IntersectingTriangles& pairs, OpenMesh& mesh) {
   std::sort(order.begin(), order.end());
   for (const auto& [count, t] : order)
     for (const Index u : others[t])
-      if (mesh.is_open[u] == 0)
-        mesh.is_open[t] = 1;
+      if (!mesh.isOpen(u))
+        mesh.setOpen(t, true);
 }
 
 /// Leaves out the smaller fans of the surface at each vertex.
-void leaveOneFan(std::size_t vertices, OpenMesh& mesh) {
-  const SphereMesh closed(mesh.triangles, vertices);
+void leaveOneFan(std::size_t vertices, SphereMesh& mesh) {
   std::vector<Index> due(vertices);
   std::iota(due.begin(), due.end(), Index{0});
   while (!due.empty()) {
     const Index v = due.back();
     due.pop_back();
-    if (closed.triangleAt(v) < 0)
+    if (mesh.triangleAt(v) < 0)
       continue;
-    const std::vector<Fan> fans = fansAt(closed, mesh.is_open, v, false);
+    const std::vector<Fan> fans = fansAt(mesh, v, false);
     if (fans.size() < 2)
       continue;
     for (const Fan& fan : withoutLargest(fans)) {
       for (const Index t : fan)
-        mesh.is_open[t] = 1;
-      const std::vector<Index> freed = closed.verticesOf(fan);
+        mesh.setOpen(t, true);
+      const std::vector<Index> freed = mesh.verticesOf(fan);
       due.insert(due.end(), freed.begin(), freed.end());
     }
   }
 }
 
 /// Leaves out small pieces of the surface, but the largest.
-void leaveLargePieces(std::size_t vertices, OpenMesh& mesh) {
+void leaveLargePieces(std::size_t vertices, SphereMesh& mesh) {
   constexpr Index min_triangles = 50;
-  const Triangles surface = surfaceOf(mesh);
+  const Triangles surface = mesh.surfaceTriangles();
   UnionFind pieces = piecesOf(surface, vertices);
   const Indexed<Index> sizes = sizesOf(surface, vertices, pieces);
   const Index least = std::min(min_triangles, *std::max_element(sizes.begin(), sizes.end()));
-  for (Index t = 0; t < mesh.is_open.count(); ++t)
-    if (sizes[pieces.find(mesh.triangles(0, t))] < least)
-      mesh.is_open[t] = 1;
+  for (const Index t : mesh.surface())
+    if (sizes[pieces.find(mesh.vertex(t, 0))] < least)
+      mesh.setOpen(t, true);
 }
 
 }  // namespace
 
 std::optional<Removal> clearIntersections(const Positions& points,
                                           const IntersectingTriangles& pairs, const Removal& most,
-                                          OpenMesh& mesh) {
+                                          SphereMesh& mesh) {
   std::vector<Index> triangles;
   for (const auto& pair : pairs)
     triangles.insert(triangles.end(), pair.begin(), pair.end());
@@ -400,10 +389,10 @@ std::optional<Removal> clearIntersections(const Positions& points,
 }
 
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
-                            OpenMesh& mesh) {
-  const std::size_t before = surfaceCount(mesh);
+                            SphereMesh& mesh) {
+  const std::size_t before = mesh.surfaceCount();
   leaveOutIntersecting(pairs, mesh);
-  const std::size_t left_out = before - surfaceCount(mesh);
+  const std::size_t left_out = before - mesh.surfaceCount();
   leaveOneFan(vertices, mesh);
   leaveLargePieces(vertices, mesh);
   return left_out;

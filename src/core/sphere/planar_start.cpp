@@ -92,7 +92,7 @@ void centerConformally(Positions& directions) {
 
 /// The points of the plane where each node but those of the outer face is the mean of its
 /// neighbours (W. T. Tutte, 1963), with conductances g_i g_j / length. g falls by a constant factor
-/// with each edge of distance from the outer face: without, nodes far from it crowd in one place.
+/// with each edge of distance from the outer face: without, nodes far from it gather in one place.
 /// The matrix is scaled to ones on the diagonal, where g no longer occurs.
 Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& outer) {
   Indexed<Index> unknown(graph.size(), 0);

@@ -67,17 +67,6 @@ std::size_t RotationSystem::entryOf(Index v, Index w) const {
   return e;
 }
 
-bool RotationSystem::isLeft(Index before, Index at, Index after, Index node) const {
-  const Eigen::Vector3d normal = normals_.col(at);
-  const Eigen::Vector3d x = direction(at, after);
-  const Eigen::Vector3d y = normal.cross(x);
-  const auto angle = [&](Index to) {
-    const Eigen::Vector3d d = direction(at, to);
-    return counterClockwise(std::atan2(y.dot(d), x.dot(d)));
-  };
-  return angle(node) < angle(before);
-}
-
 void RotationSystem::separateOpposite() {
   separates_opposite_ = true;
   keepEdges([&](Index v, std::size_t e) { return !areOpposite(v, edges_.neighbors[e]); });

@@ -1,6 +1,6 @@
 #include "outliers.h"
 
-#include "graph_helpers.h"
+#include "core/graph/graph_helpers.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -21,7 +21,7 @@ SurfacePlan::SurfacePlan(const Positions& points, const Graph& graph, bool is_fl
   openings_ = OpenSurface(points, graph, std::move(openings), is_flat, unit, options);
 }
 
-const FaceMesh* SurfacePlan::faces() {
+const SphereMesh* SurfacePlan::faces() {
   if (!has_faces_ && rotation_) {
     has_faces_ = true;
     if (rotation_->hasOpposite(*graph_))

@@ -1,6 +1,6 @@
 #include "consolidation.h"
 
-#include "../reconstructions.h"
+#include "core/reconstructions.h"
 #include "neighbor_search.h"
 
 namespace spherical_param::test {

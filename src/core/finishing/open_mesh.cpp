@@ -53,34 +53,22 @@ const Candidate* leastCrossing(const std::vector<Candidate>& candidates, const C
   return best;
 }
 
-/// The triangles around a vertex, counter-clockwise.
-Fan trianglesAround(const SphereMesh& mesh, Index v) {
-  Fan around;
-  mesh.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-  return around;
-}
-
-bool isOver(const OpenPlaces& openings, const std::array<Index, 3>& corners) {
-  return openings.isOpen(corners[0], corners[1], corners[2]);
-}
-
 class Opener {
 public:
-  Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
-      : points_(points), openings_(openings), mesh_(triangles, columnCount(points)),
-        is_open_(mesh_.slotCount(), 0), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
+  Opener(const Positions& points, const OpenPlaces& openings, SphereMesh& mesh)
+      : points_(points), mesh_(mesh), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
-      is_open_[t] = isOver(openings, mesh_.vertices(t)) ? 1 : 0;
+      mesh_.setOpen(t, openings.isOpen(mesh_.vertices(t)));
+    for (const Index t : trianglesWithoutLoop(mesh_, openings))
+      mesh_.setOpen(t, false);
   }
 
-  OpenMesh run() {
-    for (const Index t : trianglesWithoutLoop(mesh_, openings_))
-      is_open_[t] = 0;
+  void run() {
     Indexed<Face> faces;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (!isOpen(t))
         faces.push_back(face(t, mesh_.vertices(t)));
-    surface_.begin(is_open_.size(), std::move(faces));
+    surface_.begin(mesh_.slotCount(), std::move(faces));
     for (const Index v : verticesOfOpen())
       if (fanCount(v) == 0)
         attach(v);
@@ -93,11 +81,10 @@ public:
         for (const Index w : release(v))
           due.push_back(w);
     }
-    return {mesh_.triangles(), std::move(is_open_)};
   }
 
 private:
-  bool isOpen(Index t) const { return is_open_[t] != 0; }
+  bool isOpen(Index t) const { return mesh_.isOpen(t); }
 
   double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
 
@@ -112,7 +99,7 @@ private:
   }
 
   /// Number of fans of the surface at a vertex.
-  std::size_t fanCount(Index v) const { return fansAt(mesh_, is_open_, v, false).size(); }
+  std::size_t fanCount(Index v) const { return fansAt(mesh_, v, false).size(); }
 
   /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
   /// the surface: the nearest place where that intersects nothing, edges first.
@@ -203,7 +190,7 @@ private:
   /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
   /// intersects nothing. Returns the vertices that this concerns.
   std::vector<Index> release(Index v) {
-    std::vector<Fan> gaps = fansAt(mesh_, is_open_, v, true);
+    std::vector<Fan> gaps = fansAt(mesh_, v, true);
     std::stable_sort(gaps.begin(), gaps.end(),
                      [&](const Fan& a, const Fan& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Fan& gap : gaps)
@@ -256,84 +243,25 @@ private:
   }
 
   void open(Index t) {
-    is_open_[t] = 1;
+    mesh_.setOpen(t, true);
     if (surface_.contains(t))
       surface_.remove(t);
   }
   void close(Index t) {
-    is_open_[t] = 0;
+    mesh_.setOpen(t, false);
     surface_.set(face(t, mesh_.vertices(t)));
   }
 
   const Positions& points_;
-  const OpenPlaces& openings_;
-  SphereMesh mesh_;
-  Indexed<std::uint8_t> is_open_;
+  SphereMesh& mesh_;
   double scale_;                ///< brings the coordinates to at most 1
   LocalIntersections surface_;  ///< its triangles
 };
 
 }  // namespace
 
-std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
-  const auto is_open = [&](Index t) { return isOver(openings, mesh.vertices(t)); };
-  std::vector<Index> found;
-  IndexSet seen(mesh.slotCount());
-  for (Index first = 0; first < mesh.size(); ++first) {
-    if (!is_open(first) || !seen.insert(first))
-      continue;
-    std::vector<Index> piece{first};
-    bool has_loop = false;
-    for (std::size_t head = 0; head < piece.size(); ++head)
-      for (int k = 0; k < 3; ++k) {
-        const Index t = piece[head];
-        const Index next = mesh.neighbor(t, k);
-        const auto [v, w] = mesh.side(t, k);
-        has_loop = has_loop || openings.isRim(v, w);
-        if (is_open(next) && seen.insert(next))
-          piece.push_back(next);
-      }
-    if (!has_loop)
-      found.insert(found.end(), piece.begin(), piece.end());
-  }
-  return found;
-}
-
-std::vector<Fan> fansAt(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v,
-                        bool of_open) {
-  const auto is_other = [&](Index t) { return (is_open[t] != 0) != of_open; };
-  Fan around = trianglesAround(mesh, v);
-  std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_other), around.end());
-  std::vector<Fan> fans;
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    if (is_other(around[i]))
-      continue;
-    if (i == 0 || is_other(around[i - 1]))
-      fans.emplace_back();
-    fans.back().push_back(around[i]);
-  }
-  return fans;
-}
-
-OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings) {
-  return Opener(points, triangles, openings).run();
-}
-
-std::vector<Index> trianglesOfSurface(const OpenMesh& mesh) {
-  std::vector<Index> surface;
-  for (Index t = 0; t < mesh.is_open.count(); ++t)
-    if (mesh.is_open[t] == 0)
-      surface.push_back(t);
-  return surface;
-}
-
-std::size_t surfaceCount(const OpenMesh& mesh) {
-  return static_cast<std::size_t>(
-      std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
-}
-
-Triangles surfaceOf(const OpenMesh& mesh) {
-  return mesh.triangles(Eigen::all, trianglesOfSurface(mesh));
+void openMesh(const Positions& points, const OpenPlaces& openings, SphereMesh& mesh) {
+  Opener(points, openings, mesh).run();
 }
 
 }  // namespace spherical_param::internal

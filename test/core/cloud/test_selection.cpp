@@ -1,7 +1,7 @@
 #include "selection.h"
 
+#include "core/reconstructions.h"
 #include "handle_shapes.h"
-#include "reconstructions.h"
 
 namespace spherical_param::test {
 namespace {
