@@ -1,5 +1,3 @@
-// Which mesh a part gets, from the cloud on.
-
 #include "attempts.h"
 
 #include "core/reconstructions.h"
@@ -25,10 +23,9 @@ TEST(Attempts, HandlesAreMeshed) {
   expectSoundWithHandles(surfaceOf(trefoil(0.2)), 1);
   expectSoundWithHandles(surfaceOf(latticeOfTubes(0.07)), 28);
   expectSoundWithHandles(surfaceOf(gear(0.07)), 1);
-  // Of a quarter of the points, at random.
   const Positions lattice = latticeOfTubes(0.05);
   std::vector<Index> some = shuffledRange(lattice.cols(), 1);
-  some.resize(some.size() / 4);
+  some.resize(some.size() / 4);  // at random
   expectSoundWithHandles(surfaceOf(lattice(Eigen::all, some)), 28);
 }
 
