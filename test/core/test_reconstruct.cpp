@@ -183,6 +183,14 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
   }
 }
 
+TEST(Reconstruct, ATimeLimitDoesNotFailWhereZeroSucceeds) {
+  const Positions points = withNoise(ellipsoid(6000), 0.002, 5);
+  for (const double limit : {0.0, 1e-6, 0.01, 0.05})
+    EXPECT_TRUE(
+        isSphereOverAll(surfaceOf(points, given(sphere(), "time_limit", limit)).triangles, 6000))
+        << limit;
+}
+
 TEST(Reconstruct, TheJoinedMeshHasAllSurfacesAsTheyAre) {
   const Positions band = pointsWhere(
       spiralSphere(900), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });

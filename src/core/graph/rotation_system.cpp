@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -87,7 +85,10 @@ bool RotationSystem::hasOpposite(const Graph& graph) const {
 bool RotationSystem::isOneSided() const {
   // Neighbours on one sheet for sure have normals of a larger cosine.
   constexpr double min_one_sheet_cosine = 0.7;
+  // Of a Moebius band and a Klein bottle all twisted edges are against the others, of thin wings up
+  // to two thirds.
   constexpr std::size_t min_against = 10;
+  constexpr double min_fraction = 0.8;
   const auto n = static_cast<Index>(edges_.size());
   // A normal as it is, or turned.
   UnionFind sides(2 * edges_.size());
@@ -115,9 +116,7 @@ bool RotationSystem::isOneSided() const {
     sides.unite(v, w + n);
     sides.unite(v + n, w);
   });
-  if (getenv("DBG"))
-    fprintf(stderr, "against %zu of %zu\n", against, twisted);
-  return against >= min_against;
+  return against >= std::max(min_against, fractionOf(min_fraction, twisted));
 }
 
 /// Whether neighbours on one sheet have normals to opposite sides. An edge between sheets may be

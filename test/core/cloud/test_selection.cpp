@@ -152,5 +152,25 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
     }
 }
 
+TEST(Selection, PartsShareOneTimeLimit) {
+  const Positions points = inARow(8, 4.0, noisySphere(100, 0.5));
+  const Options each = given("parts", "each");
+  for (const auto& [limit, expected] : {std::pair(0.0, 8), std::pair(1e9, 0)}) {
+    const Result result = reconstruct(points, given(each, "time_limit", limit));
+    EXPECT_EQ(result.surfaces.size(), 8U);
+    EXPECT_EQ(std::count_if(result.surfaces.begin(), result.surfaces.end(),
+                            [](const Surface& surface) { return surface.is_out_of_time; }),
+              expected);
+  }
+  // All have a mesh, also those after one that takes all the time.
+  Options options = given(each, "time_limit", 0.05);
+  options.progress = [](const Progress& progress) {
+    if (progress.part == 2)
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    return true;
+  };
+  EXPECT_EQ(reconstruct(points, options).surfaces.size(), 8U);
+}
+
 }  // namespace
 }  // namespace spherical_param::test

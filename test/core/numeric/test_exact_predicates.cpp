@@ -46,6 +46,56 @@ TEST(ExactPredicates, OrientationInSpaceIsExactOnNeighbouringDoubles) {
       }
 }
 
+/// inCircle() in integers; exact for coordinates below 2^28.
+int integerInCircle(const std::array<std::array<std::int64_t, 2>, 4>& p) {
+  Wide sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto difference = [&](std::size_t i, std::size_t axis) {
+      return p[i % 3][axis] - p[3][axis];
+    };
+    const std::int64_t x = difference(k, 0);
+    const std::int64_t y = difference(k, 1);
+    sum += static_cast<Wide>(x * x + y * y) * (difference(k + 1, 0) * difference(k + 2, 1) -
+                                               difference(k + 2, 0) * difference(k + 1, 1));
+  }
+  return signOf(sum);
+}
+
+// Random points, and ones rounded to integers from a common circle, where plain evaluation in
+// double is mostly wrong; from 2^-200 to 2^200, the range that the triangulation uses.
+TEST(ExactPredicates, InCircleIsThatOfIntegerArithmetic) {
+  std::mt19937_64 random(5);
+  std::uniform_int_distribution<std::int64_t> coordinate(-(1 << 27), 1 << 27);
+  std::uniform_real_distribution<double> angle(0.0, 6.3);
+  int ties = 0;
+  int near_ties = 0;
+  for (int i = 0; i < 40000; ++i) {
+    std::array<std::array<std::int64_t, 2>, 4> points{};
+    const bool on_circle = i % 4 != 0;
+    // On small circles there are ties as well.
+    const double radius = i % 4 == 1 ? 10.0 : i % 4 == 2 ? 1e5 : 1e8;
+    for (auto& point : points) {
+      const double a = angle(random);
+      if (on_circle)
+        point = {std::lround(radius * std::cos(a)) + (1 << 24), std::lround(radius * std::sin(a))};
+      else
+        point = {coordinate(random), coordinate(random)};
+    }
+    const int expected = integerInCircle(points);
+    ties += on_circle && expected == 0 ? 1 : 0;
+    near_ties += on_circle && expected != 0 ? 1 : 0;
+    for (const double unit : {1.0, 0x1p-200, 0x1p172}) {
+      const auto point = [&](std::size_t k) {
+        return Vector2d(static_cast<double>(points[k][0]) * unit,
+                        static_cast<double>(points[k][1]) * unit);
+      };
+      ASSERT_EQ(inCircle(point(0), point(1), point(2), point(3)), expected);
+    }
+  }
+  EXPECT_GT(ties, 200);
+  EXPECT_GT(near_ties, 20000);
+}
+
 // The circle about (65, 0) of radius 65 through 8 integer points and the origin; d lies near the
 // origin, far below the last digit of the others: not even the differences fit into doubles.
 TEST(ExactPredicates, InCircleIsExactWhereDifferencesAreNot) {
@@ -104,6 +154,25 @@ TEST(ExactPredicates, AllEvaluationsAgreeAtEveryScale) {
       ASSERT_EQ(orientation2d(sa.head<2>(), sb.head<2>(), sc.head<2>()), flat);
       ASSERT_EQ(orientation3d(sa, sb, sc, scaled(d)), solid);
     }
+  }
+}
+
+// Points of an object, two of which are as near each other as numbers can be.
+TEST(ExactPredicates, OrientationIsExactWhereProductsUnderflow) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  const Vector3d a(0.1, 0.7, 0.3);
+  const Vector3d b(-0.4, 0.6, -0.2);
+  for (const double x : {-least, 0.0, least}) {
+    const Vector3d p(x, 0.0, 0.0);
+    // | a, b, p | = x (a_y b_z - a_z b_y), with the factor 0.7 * -0.2 - 0.3 * 0.6 < 0.
+    const int expected = (x < 0.0) - (x > 0.0);
+    EXPECT_EQ(orientation3d(Vector3d::Zero(), a, b, p), expected);
+    EXPECT_EQ(orientation3d(a, Vector3d::Zero(), p, b), expected);
+    EXPECT_EQ(orientation3d(p, a, Vector3d::Zero(), b), expected);
+    // | a, p | = -a_y x
+    EXPECT_EQ(orientation2d({0.0, 0.0}, a.head<2>(), p.head<2>()), expected);
+    EXPECT_EQ(orientation2d(a.head<2>(), p.head<2>(), {0.0, 0.0}), expected);
+    EXPECT_EQ(orientation2d(p.head<2>(), {0.0, 0.0}, a.head<2>()), expected);
   }
 }
 
@@ -180,6 +249,24 @@ TEST(Coplanarity, PlanesAreFoundExactlyWhateverTheMagnitudes) {
     flat += liesInPlane(places) ? 1 : 0;
   }
   EXPECT_LT(flat, 400);
+}
+
+TEST(Coplanarity, PlanesOfTinyDifferencesBesideLargeOnesAreFoundExactly) {
+  const double m = std::numeric_limits<double>::max();
+  const auto are_coplanar = [](const std::vector<Vector3d>& places) {
+    return areCoplanar(test::positionsOf(places));
+  };
+  for (const double tiny : {1e-100, 1e-120, 1e-200, 0x1p-1074}) {
+    SCOPED_TRACE(tiny);
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {tiny, 0, 0}, {0, tiny, 0}}));
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, tiny}, {0, tiny, 1}}));
+    EXPECT_TRUE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {tiny, tiny, 0}, {3, 3, tiny}}));
+    EXPECT_TRUE(are_coplanar({{tiny, 0, 0}, {tiny, 1, 0}, {tiny, 0, 1}, {tiny, m, -m}}));
+    EXPECT_TRUE(are_coplanar({{0, 0, 0}, {tiny, tiny, tiny}, {1, 1, 1}, {m, m, m}}));
+    EXPECT_FALSE(are_coplanar({{m, 0, 0}, {-m, 0, 0}, {0, m, 0}, {0, 0, tiny}}));
+  }
+  EXPECT_FALSE(are_coplanar({{m, m, m}, {-m, -m, -m}, {m, -m, m}, {m, -m, -m}}));
+  EXPECT_TRUE(are_coplanar({{m, m, m}, {-m, m, -m}, {m, -m, m}, {-m, -m, -m}}));
 }
 
 }  // namespace

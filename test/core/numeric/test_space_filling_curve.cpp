@@ -7,6 +7,22 @@
 namespace spherical_param::test {
 namespace {
 
+TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
+  // Whole numbers: no scale rounds them, and the least are denormal.
+  Positions points = (1023.0 * randomCube(1000, 1)).array().round();
+  const std::vector<Index> order = mortonOrder(points);
+  for (const double scale :
+       {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(), 0x1p-300,
+        0x1p300, 0x1p1000, 0x1p1014})
+    EXPECT_EQ(mortonOrder(points * scale), order) << scale;
+  // An axis along which nothing differs changes nothing, however far it is.
+  points *= 1e-300;
+  points.row(1).setZero();
+  const std::vector<Index> flat = mortonOrder(points);
+  points.row(1).setConstant(1e300);
+  EXPECT_EQ(mortonOrder(points), flat);
+}
+
 // Also in caps that are smaller than the cells of the curve.
 TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
   const std::vector<std::pair<Positions, double>> clouds{

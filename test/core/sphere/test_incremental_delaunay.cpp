@@ -228,5 +228,13 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
   }
 }
 
+// All in caps smaller than the cells of the curve: a walk through them stays short.
+TEST(IncrementalDelaunay, CrowdsAreTriangulatedInTime) {
+  for (const double radius : {1e-3, 1e-7, 1e-11}) {
+    const Positions points = cap(100000, radius, {0.6, 0.0, 0.8}, 2);
+    EXPECT_EQ(incrementalDelaunay(points).triangles.cols(), 2 * points.cols() - 4);
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::test
