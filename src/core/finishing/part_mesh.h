@@ -23,7 +23,7 @@ struct PartMesh {
   IntersectingPairs intersecting;           ///< triangles of the surface
   std::size_t left_out_triangles = 0;       ///< because they intersect
   bool has_certain_triangles_only = false;  ///< see Surface
-  std::size_t cut_handles = 0;  ///< of the cloud for sure, that are not wanted
+  std::size_t cut_handles = 0;              ///< of the cloud for sure, that are not wanted
 
   bool isSmoothed() const { return smoothed.cols() > 0; }
 };
