@@ -192,7 +192,7 @@ private:
       std::vector<Index>& all = corners[static_cast<std::size_t>(piece_of_[nodes[0]])];
       number_of_[t] = static_cast<Index>(all.size() / 3);
       for (const int k : {0, 2, 1})
-        all.push_back(vertex_of_node_[nodes[k]]);
+        all.push_back(vertex_of_node_[mesh_.vertex(t, k)]);
     }
     const bool is_closed = mesh_.surfaceCount() == mesh_.slotCount();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
