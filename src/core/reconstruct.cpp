@@ -224,7 +224,8 @@ void leaveOutUnusable(Result& result, std::vector<Index>& failed) {
     } else {
       kept += surface.inputs.size();
     }
-  if (unusable == 0 || kept < fractionOf(min_kept, kept + dropped.size()))
+  if (unusable == 0 ||
+      static_cast<double>(kept) < min_kept * static_cast<double>(kept + dropped.size()))
     return;
   surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_unusable), surfaces.end());
   result.failures.push_back(

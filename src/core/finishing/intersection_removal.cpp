@@ -40,7 +40,7 @@ public:
 
   /// \see clearIntersections
   std::optional<Removal> run(const Removal& most, SphereMesh& result) {
-    const bool is_closed = mesh_.surfaceCount() == columnCount(mesh_.triangles());
+    const bool is_closed = !mesh_.hasOpen();
     for (std::size_t next = 0; next < due_.size();) {
       const Index t = due_[next];
       const bool may_take = removal_.vertices < most.vertices;

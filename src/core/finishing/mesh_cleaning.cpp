@@ -9,17 +9,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
-IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const SphereMesh& mesh,
-                            const Execution& execution) {
-  const std::vector<Index> surface = mesh.surface();
-  IntersectingPairs found = findPairsUpTo(most, positions, mesh.surfaceTriangles(), execution);
-  for (auto& pair : found.pairs)
-    for (Index& t : pair)
-      t = surface[static_cast<std::size_t>(t)];
-  return found;
-}
-
 /// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
 /// them. Returns how many intersect.
 std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
@@ -51,8 +40,8 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
   // The optimisation has left those of a closed mesh on its points. One of two may stay.
   IntersectingPairs& found = mesh.intersecting;
   if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
-    found = pairsUpTo(removes ? fractionOf(2.0 * max_intersecting, triangles) : 1, positions,
-                      mesh.mesh, execution);
+    found = findPairsUpTo(removes ? fractionOf(2.0 * max_intersecting, triangles) : 1, positions,
+                          mesh.mesh.triangles(), mesh.mesh.surface(), execution);
   if (!found.pairs.empty() && !found.is_sample && removes) {
     const Removal most{fractionOf(max_vertices, columnCount(points)),
                        may_open ? fractionOf(max_triangles, triangles) : 0};
@@ -76,12 +65,14 @@ bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Ex
                       PartMesh& mesh) {
   constexpr double min_vertices = 1.0 / 3.0;
   mesh.mesh = faces;
-  const IntersectingPairs found = pairsUpTo(faces.surfaceCount(), points, faces, execution);
+  const IntersectingPairs found =
+      findPairsUpTo(faces.surfaceCount(), points, faces.triangles(), faces.surface(), execution);
   if (found.is_sample)
     return false;
   mesh.left_out_triangles = leaveOutTangles(columnCount(points), found.pairs, mesh.mesh);
   mesh.has_certain_triangles_only = true;
-  return mesh.mesh.surfaceVertexCount() >= fractionOf(min_vertices, columnCount(points));
+  return static_cast<double>(mesh.mesh.surfaceVertexCount()) >=
+         min_vertices * static_cast<double>(points.cols());
 }
 
 }  // namespace spherical_param::internal

@@ -54,7 +54,7 @@ void orientOutward(const Positions& points, SphereMesh& mesh, Embedding& embeddi
 FacedBy orient(const Positions& points, const CloudInfo& info, SphereMesh& mesh,
                Embedding& embedding) {
   const Triangles seen = mesh.surfaceTriangles();
-  const bool is_open = seen.cols() < mesh.triangles().cols();
+  const bool is_open = mesh.hasOpen();
   const auto turns = [&](double agreement, double least) {
     if (agreement <= -least) {
       mesh.turnOver();

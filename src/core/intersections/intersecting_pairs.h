@@ -35,4 +35,11 @@ struct IntersectingPairs {
 IntersectingPairs findPairsUpTo(std::size_t most, const Positions& points,
                                 const Triangles& triangles, const Execution& execution);
 
+/// The same among some triangles, as columns of all of them.
+///
+/// \param some ascending.
+IntersectingPairs findPairsUpTo(std::size_t most, const Positions& points,
+                                const Triangles& triangles, const std::vector<Index>& some,
+                                const Execution& execution);
+
 }  // namespace spherical_param::internal

@@ -234,6 +234,18 @@ internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Posi
   return found;
 }
 
+internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Positions& points,
+                                                    const Triangles& triangles,
+                                                    const std::vector<Index>& some,
+                                                    const Execution& execution) {
+  IntersectingPairs found =
+      findPairsUpTo(most, points, Triangles(triangles(Eigen::all, some)), execution);
+  for (auto& pair : found.pairs)
+    for (Index& t : pair)
+      t = some[static_cast<std::size_t>(t)];
+  return found;
+}
+
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {

@@ -99,6 +99,7 @@ public:
   /// Their corners.
   Triangles surfaceTriangles() const;
   std::size_t surfaceCount() const;
+  bool hasOpen() const { return surfaceCount() < static_cast<std::size_t>(triangle_count_); }
   /// The vertices of the surface.
   std::size_t surfaceVertexCount() const;
   /// Number of handles of a mesh in one piece.

@@ -194,7 +194,7 @@ private:
       for (const int k : {0, 2, 1})
         all.push_back(vertex_of_node_[mesh_.vertex(t, k)]);
     }
-    const bool is_closed = mesh_.surfaceCount() == mesh_.slotCount();
+    const bool is_closed = !mesh_.hasOpen();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       FinishedMesh& mesh = pieces_[i].mesh;
       mesh.triangles = Eigen::Map<const Triangles>(

@@ -199,11 +199,10 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
 
 IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report) {
-  Indexed<Index> surface;
+  std::vector<Index> surface;
   for (Index t = 0; t < mesh.mesh().size(); ++t)
     if (!mesh.facet(t).is_open)
       surface.push_back(t);
-  const Triangles triangles = mesh.mesh().triangles()(Eigen::all, surface);
   Execution execution;
   execution.threads = mesh.threads();
   if (report)
@@ -211,12 +210,7 @@ IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
       report(progress.fraction);
       return true;
     };
-  IntersectingPairs found = findPairsUpTo(most, mesh.points(), triangles, execution);
-  for (auto& [t, u] : found.pairs) {
-    t = surface[t];
-    u = surface[u];
-  }
-  return found;
+  return findPairsUpTo(most, mesh.points(), mesh.mesh().triangles(), surface, execution);
 }
 
 bool isGain(double change) {

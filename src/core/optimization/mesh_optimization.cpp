@@ -4,9 +4,6 @@
 #include "parallel.h"
 #include "sampling_analysis.h"
 #include "smoothing.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/mesh_topology.h"
-#include "spherical_param/self_intersection.h"
 #include "workbench.h"
 
 #include <algorithm>

@@ -22,8 +22,7 @@ SurfacePlan::SurfacePlan(const Positions& points, const Graph& graph, bool is_fl
 }
 
 const SphereMesh* SurfacePlan::faces() {
-  if (!has_faces_ && rotation_) {
-    has_faces_ = true;
+  if (rotation_) {
     if (rotation_->hasOpposite(*graph_))
       rotation_->separateOpposite();
     faces_ = meshFaces(*points_, *graph_, *rotation_);

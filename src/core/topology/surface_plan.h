@@ -30,8 +30,7 @@ private:
   const Positions* points_ = nullptr;
   const Graph* graph_ = nullptr;
   OpenSurface openings_;
-  std::optional<RotationSystem> rotation_;
-  bool has_faces_ = false;
+  std::optional<RotationSystem> rotation_;  ///< until the faces are made
   std::optional<SphereMesh> faces_;
 };
 
