@@ -9,6 +9,7 @@ void LocalIntersections::begin(std::size_t triangles, Indexed<Face> faces) {
     places_[face.triangle] = -1;
   places_.resize(triangles, -1);
   faces_ = std::move(faces);
+  is_in_.assign(faces_.size(), 1);
   for (Index i = 0; i < faces_.count(); ++i)
     places_[faces_[i].triangle] = i;
   boxes_ = BoxTree(faces_.size(), 1, {},
@@ -20,19 +21,17 @@ void LocalIntersections::set(const Face& face) {
   if (place < 0) {
     place = faces_.count();
     faces_.emplace_back();
+    is_in_.push_back(1);
   }
   faces_[place] = face;
+  is_in_[place] = 1;
   boxes_.set(place, boxOf(face.corners).cast<float>());
 }
 
 void LocalIntersections::remove(Index triangle) {
-  Index& place = places_[triangle];
-  faces_[place] = faces_.back();
-  boxes_.set(place, boxes_.at(faces_.count() - 1));
-  places_[faces_.back().triangle] = place;
-  place = -1;
-  faces_.pop_back();
-  boxes_.set(faces_.count(), FloatBox());
+  const Index place = places_[triangle];
+  is_in_[place] = 0;
+  boxes_.set(place, FloatBox());
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {

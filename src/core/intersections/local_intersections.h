@@ -22,11 +22,20 @@ public:
   /// Adds or changes a triangle.
   void set(const Face& face);
   void remove(Index triangle);
-  bool contains(Index triangle) const { return places_[triangle] >= 0; }
+  bool contains(Index triangle) const {
+    return places_[triangle] >= 0 && is_in_[places_[triangle]] != 0;
+  }
+  /// The set, and removed faces: they keep their place, beside those that were near.
   const std::vector<Face>& faces() const { return faces_; }
   const Face& face(Index triangle) const { return faces_[places_[triangle]]; }
   /// Appends the triangles that intersect a triangle, without itself.
   void appendIntersecting(const Face& face, std::vector<Index>& triangles) const;
+  /// Appends the triangles whose boxes overlap one.
+  void appendWithin(const FloatBox& box, std::vector<Index>& triangles) const {
+    boxes_.forEachOverlapping(
+        box, 0, [](const FloatBox&) { return false; },
+        [&](Index place) { triangles.push_back(faces_[place].triangle); });
+  }
   /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
   /// beyond `most`.
   int count(const Face& face, Index without, int most = std::numeric_limits<int>::max() - 1) const;
@@ -58,8 +67,9 @@ private:
   }
 
   Indexed<Face> faces_;
-  BoxTree boxes_;          ///< of each of faces_
-  Indexed<Index> places_;  ///< of each triangle of the mesh in faces_, or -1
+  Indexed<char> is_in_;    ///< whether each of them was not removed
+  BoxTree boxes_;          ///< of each of faces_; empty of removed ones
+  Indexed<Index> places_;  ///< of each triangle that is or was in the set in faces_, or -1
 };
 
 }  // namespace spherical_param::internal
