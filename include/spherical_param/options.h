@@ -125,7 +125,10 @@ enum class HandleMode {
 
 /// What happens to triangles that still intersect at the end.
 enum class IntersectionMode {
-  AsTopology,  ///< Remove for TopologyMode::Scan, else Keep
+  AsTopology,  ///< Auto for TopologyMode::Scan, else Keep
+  /// As Remove, but a usable mesh of a surface without openings stays closed: what cannot be taken
+  /// apart by leaving out points is kept.
+  Auto,
   /// They are taken apart: by other triangles, else by leaving out triangles and points. A tangle
   /// keeps only the triangles that are certain, unless it is smoothed; one part of several without
   /// enough of them is left out.

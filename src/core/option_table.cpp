@@ -264,9 +264,11 @@ std::vector<OptionRow> surfaceRows() {
           &Options::handles)),
       byDefault(choice<IntersectionMode>("intersections",
                                          "triangles that intersect are taken apart, if need be "
-                                         "by leaving out triangles and points, or kept",
+                                         "by leaving out triangles and points, or kept; a surface "
+                                         "without openings stays closed with auto",
                                          Everybody,
                                          {{"topology", IntersectionMode::AsTopology},
+                                          {"auto", IntersectionMode::Auto},
                                           {"remove", IntersectionMode::Remove},
                                           {"keep", IntersectionMode::Keep}},
                                          &Options::intersections)),
@@ -406,7 +408,7 @@ Options withTopology(Options options) {
   // What a place sees has no handles.
   const bool is_seen = options.view == ViewMode::Up || options.view == ViewMode::Place;
   resolve(options.handles, is_seen ? HandleMode::None : HandleMode::Auto, HandleMode::None);
-  resolve(options.intersections, IntersectionMode::Remove, IntersectionMode::Keep);
+  resolve(options.intersections, IntersectionMode::Auto, IntersectionMode::Keep);
   return options;
 }
 

@@ -1,12 +1,16 @@
 #include "intersection_removal.h"
 
+#include "bit_mixing.h"
 #include "local_intersections.h"
 #include "power_of_two.h"
 #include "sphere_mesh.h"
 #include "union_find.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -20,8 +24,13 @@ namespace {
 /// Taking out a vertex frees its some six triangles and those that they intersect.
 constexpr int kMostOfVertex = 12;
 
-/// All triangulations that are tried: some 20 us each.
-constexpr int kMostTriangulations = 100000;
+/// Exact tests of pairs of triangles, some 1.5 us each. Where triangles may be left out, less time
+/// is spent.
+std::size_t mostTests(const SphereMesh& mesh, std::size_t intersecting) {
+  const std::size_t of_closed =
+      std::min<std::size_t>(2000000, 100 * mesh.slotCount()) + 500 * intersecting;
+  return mesh.hasOpen() ? of_closed / 5 : of_closed;
+}
 
 /// What a change costs: by how many pairs their number grows, and the length of the new sides.
 using Cost = std::pair<int, double>;
@@ -31,33 +40,64 @@ class Remover {
 public:
   Remover(const Positions& points, const SphereMesh& mesh, std::vector<Index> intersecting)
       : points_(points), mesh_(mesh), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())),
-        due_(std::move(intersecting)) {
+        due_(std::move(intersecting)), most_tests_(mostTests(mesh, due_.size())) {
     Indexed<Face> faces;
     for (const Index t : mesh_.surface())
       faces.push_back(face(t));
+    // Nodes that follow each other are near.
+    const auto lowest = [](const Face& face) {
+      return *std::min_element(face.vertices.begin(), face.vertices.end());
+    };
+    std::stable_sort(faces.begin(), faces.end(),
+                     [&](const Face& a, const Face& b) { return lowest(a) < lowest(b); });
     surface_.begin(mesh_.slotCount(), std::move(faces));
   }
 
   /// \see clearIntersections
-  std::optional<Removal> run(const Removal& most, SphereMesh& result) {
+  Removal run(const Removal& most, SphereMesh& result) {
+    // Small moves are cheap, and leave few places for large ones. If not, it is a tangle.
+    constexpr std::size_t most_places = 100;
+    for (const std::size_t largest : {8, 32, 128})
+      if (largest == 8 || due_.size() <= most_places)
+        clear([&](Index t) { return moveNear(t, largest); });
+    result = mesh_;
     const bool is_closed = !mesh_.hasOpen();
-    for (std::size_t next = 0; next < due_.size();) {
-      const Index t = due_[next];
+    clear([&](Index t) {
       const bool may_take = removal_.vertices < most.vertices;
       const bool may_leave = removal_.triangles < most.triangles;
-      if (!intersects(t))
-        ++next;
-      else if (!retriangulate(t) && !(is_closed && may_take && takeOutNear(t, -1)) &&
-               !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
-        return std::nullopt;
-    }
+      return (is_closed && may_take && takeOutNear(t, -1)) || (may_leave && leaveOut(t)) ||
+             (may_take && takeOutNear(t, kMostOfVertex));
+    });
+    if (!due_.empty())
+      return {};
     result = std::move(mesh_);
     return removal_;
   }
 
 private:
+  /// Works on all triangles that intersect, as long as that helps; leaves the others due.
+  template <typename Work>
+  void clear(const Work& work) {
+    std::vector<Index> stuck;
+    while (!due_.empty()) {
+      const Index t = due_.back();
+      due_.pop_back();
+      if (!intersects(t))
+        continue;
+      if (work(t))
+        due_.push_back(t);
+      else
+        stuck.push_back(t);
+    }
+    due_ = std::move(stuck);
+  }
+
   bool isOpen(Index t) const { return mesh_.isOpen(t); }
   Face face(Index t) const { return faceOf(points_, scale_, mesh_.vertices(t), t); }
+  /// Number of triangles that intersect one, without another.
+  int countOf(const Face& face, Index without) const {
+    return surface_.count(face, without, std::numeric_limits<int>::max() - 1, exact_tests_);
+  }
   bool intersects(Index t) const {
     return surface_.contains(t) && surface_.intersects(surface_.face(t));
   }
@@ -92,7 +132,7 @@ private:
     changed_.push_back(t);
     if (!surface_.contains(t))
       return 0;
-    const int count = surface_.count(surface_.face(t), t);
+    const int count = countOf(surface_.face(t), t);
     surface_.remove(t);
     return count;
   }
@@ -101,107 +141,176 @@ private:
     if (isOpen(t))
       return 0;
     surface_.set(face(t));
-    return surface_.count(surface_.face(t), t);
+    return countOf(surface_.face(t), t);
   }
 
-  /// Flips a side, if it can be. Returns by how many pairs the number changes.
-  std::optional<int> flip(Index t, int corner) {
-    const Index o = mesh_.neighbor(t, corner);
-    if (isOpen(t) != isOpen(o) || !isFree(mesh_, mesh_.diamond(t, corner)))
-      return std::nullopt;
-    int change = -lift(t);
-    change -= lift(o);
-    mesh_.flipFree(t, corner);
-    change += lower(t);
-    change += lower(o);
-    return change;
-  }
+  // --- 1. Vertices moved
 
-  // --- 1. Other triangulations
-
-  using Side = std::array<Index, 2>;  ///< its ends
-
-  /// A triangulation of a region.
-  struct Triangulation {
-    std::vector<Side> flipped;  ///< one after the other, from the first triangulation on
-    std::vector<Side> sides;    ///< within the region
-  };
-
-  /// Takes the first triangulation of the triangles within two steps that has fewer intersections.
-  bool retriangulate(Index t) {
-    if (triangulations_ > kMostTriangulations)
-      return false;
-    // Those that help are among the first 51.
-    constexpr std::size_t most_triangulations = 100;
-    const std::vector<Index> region = regionAround(t);
-    std::set<Triples> seen{trianglesOf(region)};
-    std::vector<Triangulation> due{{{}, sidesIn(region)}};
-    for (std::size_t i = 0; i < due.size(); ++i) {
-      const Triangulation from = due[i];
-      for (const Side& side : from.sides) {
-        ++triangulations_;
+  /// Takes out some vertices near a triangle, and puts each back where it intersects least. Returns
+  /// whether that leaves fewer intersections.
+  bool moveNear(Index t, std::size_t largest) {
+    for (std::size_t count = std::max<std::size_t>(2, largest / 8); count <= largest; count *= 2)
+      for (int attempt = 0; attempt < 4 && exact_tests_ < most_tests_; ++attempt) {
         begin();
-        int change = 0;
-        for (const Side& flipped : from.flipped)
-          change += flipSide(region, flipped).value_or(0);
-        const std::optional<int> last = flipSide(region, side);
-        if (last && change + *last < 0) {
+        if (moveAtRandom(verticesNear(t, count)) < 0) {
           commit();
           return true;
         }
-        if (last && due.size() < most_triangulations && seen.insert(trianglesOf(region)).second) {
-          due.push_back({from.flipped, sidesIn(region)});
-          due.back().flipped.push_back(side);
-        }
         rollBack();
       }
-    }
     return false;
   }
 
-  /// The triangles of the surface within two steps of one.
-  std::vector<Index> regionAround(Index t) const {
-    std::vector<Index> region{t};
-    std::size_t begin_of_step = 0;
-    for (int step = 0; step < 2; ++step)
-      for (const std::size_t end = region.size(); begin_of_step < end; ++begin_of_step)
-        for (int k = 0; k < 3; ++k) {
-          const Index next = mesh_.neighbor(region[begin_of_step], k);
-          if (!isOpen(next) && std::find(region.begin(), region.end(), next) == region.end())
-            region.push_back(next);
-        }
-    return region;
-  }
-
-  using Triples = std::vector<std::array<Index, 3>>;
-
-  /// The corners of the triangles of a region, whatever their order.
-  Triples trianglesOf(const std::vector<Index>& region) const {
-    Triples triangles;
-    for (const Index t : region) {
-      triangles.push_back(mesh_.vertices(t));
-      std::sort(triangles.back().begin(), triangles.back().end());
+  /// Takes vertices out, and puts them back in any order. Returns by how many pairs their number
+  /// grows.
+  int moveAtRandom(std::vector<Index> vertices) {
+    int change = 0;
+    for (const Index v : vertices) {
+      const std::optional<Cost> cost = takeOut(v);
+      if (!cost)
+        return 0;
+      change += cost->first;
     }
-    std::sort(triangles.begin(), triangles.end());
-    return triangles;
+    for (std::size_t i = vertices.size(); i > 1; --i)
+      std::swap(vertices[i - 1], vertices[random(i)]);
+    std::vector<Index> places = placesFor(vertices);
+    for (const Index v : vertices)
+      change += putBack(v, places);
+    return change + flipSmooth();
   }
 
-  std::vector<Side> sidesIn(const std::vector<Index>& region) const {
-    std::vector<Side> sides;
-    for (const Index t : region)
+  /// Flips sides of triangles that have changed, so that the surface bends less and no more
+  /// triangles intersect. Returns by how many pairs their number grows.
+  int flipSmooth() {
+    constexpr std::size_t most_changes = 6000;
+    int change = 0;
+    for (std::size_t i = 0; i < changed_.size() && i < most_changes; ++i)
       for (int k = 0; k < 3; ++k)
-        if (const Index o = mesh_.neighbor(t, k);
-            t < o && std::find(region.begin(), region.end(), o) != region.end())
-          sides.push_back(mesh_.side(t, k));
-    return sides;
+        if (const Index t = changed_[i]; surface_.contains(t))
+          change += flipIfSmoother(t, k);
+    return change;
   }
 
-  std::optional<int> flipSide(const std::vector<Index>& region, const Side& side) {
-    for (const Index t : region)
-      for (int k = 0; k < 3; ++k)
-        if (mesh_.side(t, k) == side)
-          return flip(t, k);
-    return std::nullopt;
+  /// Flips a side if that bends the surface less, by the lengths of the edges times the angles
+  /// there, and the new triangles intersect nothing. Returns by how many pairs their number grows.
+  int flipIfSmoother(Index t, int corner) {
+    const Index o = mesh_.neighbor(t, corner);
+    const auto at = mesh_.diamond(t, corner);
+    if (isOpen(o) || !isFree(mesh_, at))
+      return 0;
+    const auto normal = [&](Index a, Index b, Index c) -> Eigen::Vector3d {
+      const Eigen::Vector3d p = points_.col(a);
+      return Eigen::Vector3d(points_.col(b) - p)
+          .cross(Eigen::Vector3d(points_.col(c) - p))
+          .normalized();
+    };
+    const auto [a, b, c, d] = at;
+    const int l = mesh_.oppositeCorner(t, corner);
+    // The sides of the diamond, with the triangles beyond and those on this side before and after.
+    const std::array<std::array<Index, 2>, 4> sides{{{c, a}, {b, c}, {a, d}, {d, b}}};
+    const std::array<Index, 4> beyond{
+        mesh_.neighbor(t, (corner + 2) % 3), mesh_.neighbor(t, (corner + 1) % 3),
+        mesh_.neighbor(o, (l + 1) % 3), mesh_.neighbor(o, (l + 2) % 3)};
+    const Eigen::Vector3d cab = normal(c, a, b);
+    const Eigen::Vector3d dba = normal(d, b, a);
+    const Eigen::Vector3d cad = normal(c, a, d);
+    const Eigen::Vector3d cdb = normal(c, d, b);
+    const auto bend = [&](Index v, Index w, const Eigen::Vector3d& n, const Eigen::Vector3d& m) {
+      return length(v, w) * std::acos(std::clamp(n.dot(m), -1.0, 1.0));
+    };
+    double before = bend(a, b, cab, dba);
+    double after = bend(c, d, cad, cdb);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& [x, y, z] = mesh_.vertices(beyond[i]);
+      const Eigen::Vector3d n = normal(x, y, z);
+      before += bend(sides[i][0], sides[i][1], n, i < 2 ? cab : dba);
+      after += bend(sides[i][0], sides[i][1], n, i % 2 == 0 ? cad : cdb);
+    }
+    constexpr double sure = 1.0 - 1e-6;
+    if (!(after < sure * before))
+      return 0;
+    const int crossings = countOf(faceOf(points_, scale_, {c, a, d}, t), o) +
+                          countOf(faceOf(points_, scale_, {c, d, b}, o), t);
+    if (crossings > 0)
+      return 0;
+    const int before_flip = lift(t) + lift(o);
+    mesh_.flipFree(t, corner);
+    lower(t);
+    lower(o);
+    return -before_flip;
+  }
+
+  std::size_t random(std::size_t end) { return (random_ = splitmix64(random_)) % end; }
+
+  /// Some vertices of a triangle and of those that it intersects, at random, then of triangles
+  /// around these.
+  std::vector<Index> verticesNear(Index t, std::size_t count) {
+    std::vector<Index> front = mesh_.verticesOf(withIntersecting(t));
+    sortUnique(front);
+    std::vector<Index> found;
+    std::set<Index> seen(front.begin(), front.end());
+    while (found.size() < count && !front.empty()) {
+      const std::size_t pick = random(std::min<std::size_t>(front.size(), 12));
+      const Index v = front[pick];
+      front.erase(front.begin() + static_cast<std::ptrdiff_t>(pick));
+      found.push_back(v);
+      mesh_.forEachAround(v, [&](Index u, int corner) {
+        const Index w = mesh_.vertex(u, (corner + 1) % 3);
+        if (seen.insert(w).second)
+          front.push_back(w);
+      });
+    }
+    return found;
+  }
+
+  /// The triangles within the box of some vertices and of the triangles that have changed.
+  std::vector<Index> placesFor(std::vector<Index> vertices) const {
+    for (const Index t : changed_)
+      if (mesh_.isUsed(t))
+        vertices.insert(vertices.end(), mesh_.vertices(t).begin(), mesh_.vertices(t).end());
+    FloatBox box;
+    for (const Index v : vertices)
+      box.extend((scale_ * points_.col(v)).cast<float>());
+    std::vector<Index> places;
+    surface_.appendWithin(box, places);
+    return places;
+  }
+
+  /// Puts a vertex that was taken out into the triangle where it intersects least; of several, into
+  /// the nearest one. Returns by how many pairs their number grows.
+  ///
+  /// \param places triangles; receives the new ones.
+  int putBack(Index v, std::vector<Index>& places) {
+    std::vector<std::pair<double, Index>> near;
+    for (const Index t : places) {
+      const auto& [a, b, c] = mesh_.vertices(t);
+      near.emplace_back(length(v, a) + length(v, b) + length(v, c), t);
+    }
+    const auto end = near.begin() + std::min<std::ptrdiff_t>(32, near.end() - near.begin());
+    std::partial_sort(near.begin(), end, near.end());
+    std::pair<int, Index> best{std::numeric_limits<int>::max(), -1};
+    for (auto place = near.begin(); place != end && best.first > 0; ++place)
+      best = std::min(best, {crossingsIn(place->second, v), place->second});
+    int change = -lift(best.second);
+    for (const Index part : mesh_.split(best.second, v)) {
+      if (part != best.second)
+        places.push_back(part);
+      changed_.push_back(part);
+      change += lower(part);
+    }
+    return change;
+  }
+
+  /// Number of intersections of a triangle that a vertex splits.
+  int crossingsIn(Index t, Index v) const {
+    const auto& [a, b, c] = mesh_.vertices(t);
+    const std::array parts{faceOf(points_, scale_, {v, a, b}, t),
+                           faceOf(points_, scale_, {v, b, c}, t),
+                           faceOf(points_, scale_, {v, c, a}, t)};
+    int count = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      count += countOf(parts[i], t) + (intersect(parts[i], parts[(i + 1) % 3]) ? 1 : 0);
+    return count;
   }
 
   // --- 2. Triangles left out
@@ -211,7 +320,7 @@ private:
   bool leaveOut(Index t) {
     std::vector<std::pair<int, Index>> order;
     for (const Index u : withIntersecting(t))
-      order.emplace_back(-surface_.count(surface_.face(u), u), u);
+      order.emplace_back(-countOf(surface_.face(u), u), u);
     std::sort(order.begin(), order.end());
     for (const auto& [count, u] : order) {
       mesh_.setOpen(u, true);
@@ -302,8 +411,7 @@ private:
         return;
       // The side leads from v to w; the ear has the two ends of the new side and w.
       const Index w = at.a == v ? at.b : at.a;
-      const int count =
-          isOpen(t) ? 0 : surface_.count(faceOf(points_, scale_, {at.c, w, at.d}, t), t);
+      const int count = isOpen(t) ? 0 : countOf(faceOf(points_, scale_, {at.c, w, at.d}, t), t);
       const Cost cost{count, length(at.c, at.d)};
       if (best.first < 0 || cost < least) {
         best = {t, side};
@@ -315,11 +423,13 @@ private:
 
   const Positions& points_;
   SphereMesh mesh_;
-  double scale_;                ///< brings the coordinates to at most 1
-  LocalIntersections surface_;  ///< its triangles
-  std::vector<Index> changed_;  ///< since begin()
-  std::vector<Index> due_;      ///< triangles that may intersect
-  int triangulations_ = 0;
+  double scale_;                         ///< brings the coordinates to at most 1
+  LocalIntersections surface_;           ///< its triangles
+  std::vector<Index> changed_;           ///< since begin()
+  std::vector<Index> due_;               ///< triangles that may intersect
+  std::size_t most_tests_;               ///< 1.5 us each
+  mutable std::size_t exact_tests_ = 0;  ///< so far
+  std::uint64_t random_ = 1;
   Removal removal_;
 };
 
@@ -376,15 +486,12 @@ void leaveLargePieces(std::size_t vertices, SphereMesh& mesh) {
 
 }  // namespace
 
-std::optional<Removal> clearIntersections(const Positions& points,
-                                          const IntersectingTriangles& pairs, const Removal& most,
-                                          SphereMesh& mesh) {
+Removal clearIntersections(const Positions& points, const IntersectingTriangles& pairs,
+                           const Removal& most, SphereMesh& mesh) {
   std::vector<Index> triangles;
   for (const auto& pair : pairs)
     triangles.insert(triangles.end(), pair.begin(), pair.end());
   sortUnique(triangles);
-  if (triangles.size() > most.triangles + kMostOfVertex * most.vertices)
-    return std::nullopt;
   return Remover(points, mesh, std::move(triangles)).run(most, mesh);
 }
 

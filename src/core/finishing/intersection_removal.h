@@ -18,23 +18,22 @@ struct Removal {
   std::size_t triangles = 0;  ///< without those around the vertices
 };
 
-/// Takes apart for good the few triangles of a mesh that still intersect. For each of them, the
-/// first of these that helps:
+/// Takes apart the few triangles of a mesh that still intersect. For each of them, the first of
+/// these that leaves fewer:
 ///
-/// 1. a triangulation of the triangles within two steps that has fewer intersections, of up to 100;
-/// 2. if the mesh is closed, one of its vertices, or of a triangle that it intersects, is taken out
-///    by flips and a 3-to-1 merge, which keeps the topology;
+/// 1. two to 128 vertices near it are taken out, by flips and 3-to-1 merges, which keep the
+///    topology, and put back one by one where they intersect least (ruin and recreate);
+/// 2. if the mesh is closed, one of its vertices, or of a triangle that it intersects, is left out;
 /// 3. it is left out, or one that it intersects, if the others stay a manifold;
-/// 4. a vertex is taken out even if as many intersections are left.
+/// 4. a vertex is left out even if as many intersections are left.
 ///
 /// \param points 3 x n.
-/// \param pairs  all that intersect, of the triangles of `mesh`.
-/// \param most   that may be taken out.
-/// \param mesh   changed only if no triangles intersect afterwards.
-/// \return what was taken out; nothing if triangles still intersect.
-std::optional<Removal> clearIntersections(const Positions& points,
-                                          const IntersectingTriangles& pairs, const Removal& most,
-                                          SphereMesh& mesh);
+/// \param pairs  all that intersect, of the triangles of `mesh`; too many are left alone.
+/// \param most   that may be left out.
+/// \param mesh   changed.
+/// \return what was left out.
+Removal clearIntersections(const Positions& points, const IntersectingTriangles& pairs,
+                           const Removal& most, SphereMesh& mesh);
 
 /// Leaves out all triangles that intersect, those with the most intersections first; then the
 /// smaller fans at a vertex that has several, and pieces of fewer than 50 triangles, but the

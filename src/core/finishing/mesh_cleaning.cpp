@@ -9,6 +9,12 @@
 namespace spherical_param::internal {
 namespace {
 
+/// Whether triangles may be left out of a mesh however few of them intersect.
+bool mayOpen(const Options& options, const PartMesh& mesh) {
+  return removesIntersections(options) && options.surface != SurfaceMode::Closed &&
+         (mesh.openings.isOpen() || options.intersections == IntersectionMode::Remove);
+}
+
 /// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
 /// them. Returns how many intersect.
 std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
@@ -24,37 +30,54 @@ std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
 }  // namespace
 
 bool removesIntersections(const Options& options) {
-  return options.intersections == IntersectionMode::Remove && options.method == Method::Default;
+  return options.intersections != IntersectionMode::Keep && options.method == Method::Default;
+}
+
+bool mayLeaveOutTriangles(const Options& options, const PartMesh& mesh) {
+  return mayOpen(options, mesh) || (removesIntersections(options) &&
+                                    options.surface != SurfaceMode::Closed && !mesh.isUsable());
 }
 
 void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
                PartMesh& mesh) {
-  // More of a surface is no spot, but a tangle.
+  // More of a surface is no spot, but a tangle: more that intersects is not even worked on.
   constexpr double max_vertices = 0.002;
+  constexpr double max_vertices_of_closed = 0.001;
   constexpr double max_triangles = 0.01;
   constexpr double max_intersecting = 0.1;
-  const bool removes = removesIntersections(options) && !mesh.optimization.is_out_of_time;
-  const bool may_open = options.surface != SurfaceMode::Closed;
+  constexpr double max_cleared = 0.25;
+  const bool clears = options.method == Method::Default && !mesh.optimization.is_out_of_time;
+  const bool removes = clears && removesIntersections(options);
   const Positions& positions = mesh.isSmoothed() ? mesh.smoothed : points;
   const std::size_t triangles = mesh.mesh.surfaceCount();
+  const auto find = [&](std::size_t most) {
+    const std::vector<Index> surface = mesh.mesh.surface();
+    IntersectingPairs found =
+        findPairsUpTo(most, positions, mesh.mesh.surfaceTriangles(), execution);
+    for (auto& [t, u] : found.pairs)
+      for (Index* const of : {&t, &u})
+        *of = surface[static_cast<std::size_t>(*of)];
+    return found;
+  };
+  const std::size_t most = clears ? fractionOf(max_cleared, triangles) : 1;
   // The optimisation has left those of a closed mesh on its points. One of two may stay.
   IntersectingPairs& found = mesh.intersecting;
-  if (mesh.openings.isOpen() || mesh.isSmoothed() || (removes && found.is_sample))
-    found = findPairsUpTo(removes ? fractionOf(2.0 * max_intersecting, triangles) : 1, positions,
-                          mesh.mesh.triangles(), mesh.mesh.surface(), execution);
-  if (!found.pairs.empty() && !found.is_sample && removes) {
-    const Removal most{fractionOf(max_vertices, columnCount(points)),
-                       may_open ? fractionOf(max_triangles, triangles) : 0};
-    std::optional<std::size_t> left_out;
-    if (const auto removal = clearIntersections(positions, found.pairs, most, mesh.mesh))
-      left_out = removal->triangles;
-    else if (may_open)
-      left_out = leaveOutUpTo(fractionOf(max_intersecting, triangles), columnCount(points),
-                              found.pairs, mesh.mesh);
-    if (left_out) {
-      mesh.left_out_triangles = *left_out;
-      found = {};
-    }
+  if (mesh.openings.isOpen() || mesh.isSmoothed() || (clears && found.is_sample))
+    found = find(most);
+  if (!found.pairs.empty() && !found.is_sample && clears) {
+    const bool is_open = mayOpen(options, mesh);
+    const double max_lost = is_open ? max_vertices : removes ? max_vertices_of_closed : 0.0;
+    const Removal limit{fractionOf(max_lost, columnCount(points)),
+                        is_open ? fractionOf(max_triangles, triangles) : 0};
+    mesh.left_out_triangles =
+        clearIntersections(positions, found.pairs, limit, mesh.mesh).triangles;
+    found = find(most);
+    if (!found.pairs.empty() && mayLeaveOutTriangles(options, mesh))
+      if (const auto left_out = leaveOutUpTo(fractionOf(max_intersecting, triangles),
+                                             columnCount(points), found.pairs, mesh.mesh)) {
+        mesh.left_out_triangles += *left_out;
+        found = {};
+      }
   }
   if (!found.pairs.empty())
     found =

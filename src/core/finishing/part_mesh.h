@@ -5,6 +5,7 @@
 #include "mesh_optimization.h"
 #include "open_surface.h"
 #include "sphere_mesh.h"
+#include "spherical_param/self_intersection.h"
 
 #include <cstddef>
 #include <optional>
@@ -26,6 +27,11 @@ struct PartMesh {
   std::size_t cut_handles = 0;              ///< of the cloud for sure, that are not wanted
 
   bool isSmoothed() const { return smoothed.cols() > 0; }
+  /// \see Surface::isUsable
+  bool isUsable() const {
+    return !intersecting.is_sample &&
+           100 * countTriangles(intersecting.pairs) <= mesh.surfaceCount();
+  }
 };
 
 }  // namespace spherical_param::internal

@@ -8,8 +8,7 @@ namespace spherical_param::test {
 namespace {
 
 /// Of a closed mesh, whose pairs are found before.
-std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
-                                          SphereMesh& mesh) {
+Removal clearIntersections(const Positions& points, const Removal& most, SphereMesh& mesh) {
   return internal::clearIntersections(points, findSelfIntersections(points, mesh.triangles()), most,
                                       mesh);
 }
@@ -27,38 +26,52 @@ struct Pierced {
   SphereMesh mesh;
 };
 
-TEST(IntersectionRemoval, OtherTrianglesKeepEveryVertex) {
-  const Case of = scrambledEllipsoid(300, 0.3, 100, 2);
-  ASSERT_FALSE(findSelfIntersections(of.points, of.triangles).empty());
-  SphereMesh mesh(of.triangles, 300);
-  const std::optional<Removal> removal = clearIntersections(of.points, {20, 0}, mesh);
-  ASSERT_TRUE(removal);
-  EXPECT_EQ(removal->vertices + removal->triangles, 0U);
-  EXPECT_TRUE(isSphereOverAll(mesh.triangles(), 300));
-  EXPECT_TRUE(findSelfIntersections(of.points, mesh.triangles()).empty());
+TEST(IntersectionRemoval, OtherPlacesInTheMeshKeepEveryVertex) {
+  const auto expect_clear = [](const Positions& points, SphereMesh mesh) {
+    const auto n = static_cast<Index>(points.cols());
+    ASSERT_FALSE(findSelfIntersections(points, mesh.triangles()).empty());
+    const Removal removal = clearIntersections(points, {20, 20}, mesh);
+    EXPECT_EQ(removal.vertices + removal.triangles, 0U);
+    EXPECT_TRUE(isSphereOverAll(mesh.triangles(), n));
+    EXPECT_TRUE(findSelfIntersections(points, mesh.triangles()).empty());
+  };
+  const Case scrambled = scrambledEllipsoid(300, 0.3, 100, 2);
+  expect_clear(scrambled.points, SphereMesh(scrambled.triangles, 300));
+  const Pierced pierced;
+  expect_clear(pierced.points, pierced.mesh);
+  // Noise of a spacing: hundreds of intersections.
+  const Positions noisy = withNoise(spiralSphere(600), sphereSpacing(600), 1);
+  expect_clear(noisy, SphereMesh(triangulateSphere(spiralSphere(600)), 600));
 }
 
-TEST(IntersectionRemoval, TakesOutAVertexOrTrianglesWithinItsLimits) {
+TEST(IntersectionRemoval, WhereNoPlaceHelpsAVertexOrTrianglesAreLeftOutWithinLimits) {
   for (const Removal& most : {Removal{1, 0}, Removal{0, 20}, Removal{0, 0}}) {
-    Pierced sphere;
-    ASSERT_GT(sphere.intersections(), 0U);
-    const Triangles before = sphere.mesh.triangles();
-    const std::optional<Removal> removal = clearIntersections(sphere.points, most, sphere.mesh);
-    ASSERT_EQ(removal.has_value(), most.vertices + most.triangles > 0U);
-    if (!removal) {
-      EXPECT_EQ(sphere.mesh.triangles(), before);
-      continue;
-    }
-    EXPECT_EQ(removal->vertices, most.vertices);
-    EXPECT_EQ(removal->triangles > 0U, most.triangles > 0U);
-    EXPECT_EQ(sphere.intersections(), 0U);
-    const MeshTopology topology = sphere.topology();
+    // A flat disc, one of whose inner vertices is outside of it, in its plane.
+    Positions points = spiralSphere(400);
+    SphereMesh mesh(triangulateSphere(points), 400);
+    Index top = 0;
+    points.row(2).maxCoeff(&top);
+    for (Index t = 0; t < mesh.size(); ++t)
+      mesh.setOpen(t, points(2, mesh.triangles().col(t)).minCoeff() < 0.0);
+    points.row(2).setZero();
+    points.col(top) << 5.0, 0.0, 0.0;
+    const std::vector<Index> surface = mesh.surface();
+    auto pairs = findSelfIntersections(points, mesh.surfaceTriangles());
+    ASSERT_FALSE(pairs.empty());
+    for (auto& pair : pairs)
+      for (Index& t : pair)
+        t = surface[static_cast<std::size_t>(t)];
+    const std::size_t vertices = mesh.surfaceVertexCount();
+    const Removal removal = internal::clearIntersections(points, pairs, most, mesh);
+    EXPECT_EQ(removal.vertices, most.vertices);
+    EXPECT_EQ(removal.triangles > 0U, most.triangles > 0U);
+    EXPECT_EQ(findSelfIntersections(points, mesh.surfaceTriangles()).empty(),
+              most.vertices + most.triangles > 0);
+    const MeshTopology topology = checkTopology(mesh.surfaceTriangles(), 400);
     EXPECT_TRUE(topology.manifold() && topology.oriented);
-    EXPECT_EQ(topology.genus, 0);
-    EXPECT_EQ(topology.closed, most.vertices > 0U);
-    EXPECT_EQ(topology.unused_vertices,
-              most.vertices > 0U ? std::vector<Index>{200} : std::vector<Index>());
-    EXPECT_TRUE(most.vertices > 0U || topology.triangles + removal->triangles == 796U);
+    EXPECT_EQ(topology.components, 1U);
+    EXPECT_LE(mesh.surfaceVertexCount(), vertices - most.vertices);
+    EXPECT_EQ(topology.triangles + removal.triangles + 2 * removal.vertices, surface.size());
   }
 }
 

@@ -6,36 +6,64 @@
 namespace spherical_param::test {
 namespace {
 
-TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
+PartMesh cleaned(const Positions& points, PartMesh mesh, const Options& options) {
+  cleanMesh(points, withTopology(options), {}, mesh);
+  EXPECT_EQ(findSelfIntersections(points, mesh.mesh.surfaceTriangles()), mesh.intersecting.pairs);
+  return mesh;
+}
+
+TEST(MeshCleaning, TakesASpotApartUnlessTheOptionsForbidIt) {
   Positions points = spiralSphere(600);
-  const Triangles triangles = triangulateSphere(points);
   points.col(200) *= -1.5;
   PartMesh mesh;
-  mesh.mesh = SphereMesh(triangles, 600);
-  mesh.intersecting.pairs = findSelfIntersections(points, triangles);
+  mesh.mesh = SphereMesh(triangulateSphere(spiralSphere(600)), 600);
+  mesh.intersecting.pairs = findSelfIntersections(points, mesh.mesh.triangles());
   ASSERT_FALSE(mesh.intersecting.pairs.empty());
-  // How many triangles are left out if no others intersect.
-  const auto cleaned = [&](const Options& options) -> std::optional<std::size_t> {
-    PartMesh result = mesh;
-    cleanMesh(points, withTopology(options), {}, result);
-    const Triangles surface = result.mesh.surfaceTriangles();
-    EXPECT_EQ(findSelfIntersections(points, surface), result.intersecting.pairs);
-    if (result.intersecting.pairs.empty())
-      return result.left_out_triangles;
-    EXPECT_EQ(surface, triangles);
-    return std::nullopt;
+  const auto is_cleaned = [&](const Options& options) {
+    const PartMesh result = cleaned(points, mesh, options);
+    EXPECT_TRUE(isSphereOverAll(result.mesh.surfaceTriangles(), 600));
+    EXPECT_EQ(result.left_out_triangles, 0U);
+    return result.intersecting.pairs.empty();
   };
-  EXPECT_TRUE(cleaned({}));
-  EXPECT_EQ(cleaned(given("surface", "closed")), 0U);
-  EXPECT_FALSE(cleaned(given(paper(), "intersections", "remove")));
-  EXPECT_FALSE(cleaned(given("intersections", "keep")));
+  EXPECT_TRUE(is_cleaned({}));
+  EXPECT_TRUE(is_cleaned(given("surface", "closed")));
+  EXPECT_TRUE(is_cleaned(given("intersections", "keep")));
+  EXPECT_TRUE(is_cleaned(sphere()));
+  EXPECT_FALSE(is_cleaned(given(paper(), "intersections", "remove")));
   mesh.optimization.is_out_of_time = true;
-  EXPECT_FALSE(cleaned({}));
+  EXPECT_FALSE(is_cleaned({}));
   // What was counted before the points were smoothed is not what intersects now.
   mesh.optimization.is_out_of_time = false;
   mesh.smoothed = points;
   mesh.intersecting = {};
-  EXPECT_TRUE(cleaned({}));
+  EXPECT_TRUE(is_cleaned({}));
+}
+
+/// A thin body with noise of 0.3 distances of its points.
+Positions noisyLens(Index n, double thickness, std::uint64_t seed) {
+  return withNoise(Eigen::Vector3d(1.0, 1.0, thickness).asDiagonal() * spiralSphere(n),
+                   0.3 * sphereSpacing(n), seed);
+}
+
+TEST(MeshCleaning, AClosedMeshStaysClosedWithAllPoints) {
+  // A triangle of each was left out.
+  for (const Positions& points :
+       {noisyLens(400, 0.2, 9), noisyLens(600, 0.16, 1), noisyLens(600, 0.16, 10)}) {
+    const Result result = reconstruct(points);
+    expectSound(result.surface(), 0, 0);
+    EXPECT_TRUE(result.left_out.text().empty());
+  }
+}
+
+TEST(MeshCleaning, WhatCannotBeTakenApartIsAHoleOnRequestAlone) {
+  const Positions points = noisyLens(1500, 0.1, 8);
+  const Surface kept = surfaceOf(points);
+  EXPECT_TRUE(isSphereOverAll(kept.triangles, 1500));
+  EXPECT_TRUE(kept.isUsable());
+  EXPECT_EQ(kept.left_out_triangles, 0U);
+  const Surface removed = surfaceOf(points, given("intersections", "remove"));
+  EXPECT_EQ(removed.intersecting_triangles, 0U);
+  EXPECT_EQ(removed.isClosed(), kept.intersecting_triangles == 0);
 }
 
 /// Random points of a plate whose two sides, which false edges join, are nearer to each other than
