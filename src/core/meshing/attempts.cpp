@@ -23,9 +23,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Handles are certain if the mesh without them has so many times the energy after flips; others
-/// must save this fraction of it after the optimisation.
-constexpr double kSureGain = 2.1;
+/// The fraction of the energy that handles should save.
 constexpr double kMinGain = 0.05;
 
 /// A finished mesh and what it costs.
@@ -35,6 +33,7 @@ struct Outcome {
   std::size_t left_out = 0;      ///< points and triangles
   std::optional<double> energy;  ///< if it was asked for
 
+  bool isOpen() const { return part.mesh.hasOpen(); }
   std::size_t intersecting() const { return countTriangles(part.intersecting.pairs); }
 };
 
@@ -73,7 +72,7 @@ public:
       if (next && (!best_ || isBetter(*next, *best_)))
         best_ = std::move(next);
     }
-    if (options_.handles == HandleMode::None && clock_.hasTimeAgain() && hasSureHandles())
+    if (options_.handles == HandleMode::None && clock_.hasTimeAgain() && areHandlesSure())
       best_->part.cut_handles = facesGenus();
     takeSphere();
     return std::move(*best_);
@@ -90,30 +89,35 @@ private:
     return best_ && best_->part.intersecting.pairs.empty() && best_->left_out == 0;
   }
 
-  /// Fewer intersections, then more points, then less energy. More handles must save energy, unless
-  /// the faces show them.
+  /// Of usable meshes, the closed one, then that whose handles save energy, or has none; of others
+  /// that with fewer intersections, more points, less energy.
   bool isBetter(Outcome& mesh, Outcome& than) {
-    constexpr double few_points = 0.001;
+    if (!removesIntersections(options_) && mesh.left_out != than.left_out)
+      return mesh.left_out < than.left_out;
+    if (mesh.part.isUsable() && than.part.isUsable()) {
+      if (mesh.isOpen() != than.isOpen())
+        return than.isOpen();
+      if (mesh.genus != than.genus)
+        return mesh.genus > than.genus ? doHandlesHelp(mesh, than) : !doHandlesHelp(than, mesh);
+    }
     if (mesh.intersecting() != than.intersecting())
       return mesh.intersecting() < than.intersecting();
-    if (mesh.genus < than.genus)
-      return !isBetter(than, mesh);
-    if (mesh.genus == than.genus)
-      return std::pair(mesh.left_out, energyOf(mesh)) < std::pair(than.left_out, energyOf(than));
+    return std::pair(mesh.left_out, energyOf(mesh)) < std::pair(than.left_out, energyOf(than));
+  }
+
+  /// Whether a mesh is better than another one because it has more handles.
+  bool doHandlesHelp(Outcome& mesh, Outcome& than) {
+    constexpr double few_points = 0.001;
+    constexpr double max_of_doubtful = 0.9;
     const std::size_t few = fractionOf(few_points, graph_.size());
     if (mesh.left_out > than.left_out + few || than.left_out > mesh.left_out + few)
       return mesh.left_out < than.left_out;
-    if (saveHandles())
-      return (1.0 - kMinGain) * energyOf(mesh) < energyOf(than);
-    return mesh.left_out <= than.left_out && energyOf(mesh) < (1.0 - kMinGain) * energyOf(than);
+    return energyOf(mesh) < (areHandlesSure() ? 1.0 : max_of_doubtful) * energyOf(than);
   }
 
   // --- 1. The faces of the graph
 
-  bool mayUseFaces() {
-    return (removesIntersections(options_) || mayHaveHandles()) && !isGiven(options_) &&
-           plan_.faces() != nullptr;
-  }
+  bool mayUseFaces() { return !isGiven(options_) && plan_.faces() != nullptr; }
 
   /// The triangles that are in no face of the graph, without those over openings, as a fraction.
   double defects() {
@@ -128,22 +132,33 @@ private:
   /// energy.
   bool areFacesGood() {
     constexpr double max_defects = 0.001;
-    if (!mayUseFaces() || plan_.openings().isOneSided())
+    const bool is_sphere_alone = !removesIntersections(options_) && !mayHaveHandles();
+    if (is_sphere_alone || !mayUseFaces() || plan_.openings().isOneSided())
       return false;
-    return facesGenus() == 0 ? defects() <= max_defects : mayHaveHandles() && saveHandles();
+    return facesGenus() == 0 ? defects() <= max_defects : mayHaveHandles() && areHandlesSure();
   }
 
-  bool saveHandles() {
-    if (!save_handles_)
-      save_handles_ =
-          facesGenus() > 0 && kSureGain * flippedEnergy(faces()) < flippedEnergy(sphere());
-    return *save_handles_;
+  /// Whether the faces have handles for sure: they close up with few defects, and cost far less
+  /// energy than the sphere, and less than the faces without handles.
+  bool areHandlesSure() {
+    constexpr double max_defects = 0.03;
+    constexpr double min_of_sphere = 2.1;
+    constexpr double min_of_cut = 1.02;
+    if (!are_handles_sure_)
+      are_handles_sure_ = facesGenus() > 0 && defects() <= max_defects &&
+                          min_of_sphere * flippedEnergy(faces()) < flippedEnergy(sphere()) &&
+                          (!cut() || min_of_cut * flippedEnergy(faces()) < flippedEnergy(*cut()));
+    return *are_handles_sure_;
   }
 
-  /// Whether the faces have handles for sure.
-  bool hasSureHandles() {
-    constexpr double max_defects = 0.01;
-    return facesGenus() > 0 && defects() <= max_defects && saveHandles();
+  /// The faces without handles; nothing if there are none.
+  std::optional<Start>& cut() {
+    if (!cut_) {
+      cut_.emplace();
+      if (const auto mesh = withoutHandles(points_, graph_, *plan_.faces()))
+        *cut_ = startOf(*mesh);
+    }
+    return *cut_;
   }
 
   Start startOf(const SphereMesh& faces) const {
@@ -183,18 +198,14 @@ private:
   }
 
   bool areHandlesDoubtful() {
-    return mayUseFaces() && facesGenus() > 0 && !(mayHaveHandles() && hasSureHandles()) &&
+    return mayUseFaces() && facesGenus() > 0 && !(mayHaveHandles() && areHandlesSure()) &&
            (!isSound() || best_->genus > 0);
   }
 
   std::optional<Outcome> meshFacesWithoutHandles() {
-    const std::optional<SphereMesh> faces = withoutHandles(points_, graph_, *plan_.faces());
-    if (!faces)
+    if (!cut() || !mayHelp(flippedEnergy(*cut()), 0))
       return std::nullopt;
-    Start start = startOf(*faces);
-    if (saveHandles() && !mayHelp(flippedEnergy(start), 0))
-      return std::nullopt;
-    return finished(std::move(start.mesh), {});
+    return finished(cut()->mesh, {});
   }
 
   // --- 2. The sphere
@@ -258,7 +269,7 @@ private:
   bool mayOpenAll() {
     constexpr double few = 0.002;
     return (best_->intersecting() > 0 || best_->left_out > fractionOf(few, graph_.size())) &&
-           removesIntersections(options_) && options_.surface == SurfaceMode::Auto &&
+           mayLeaveOutTriangles(options_, best_->part) && options_.surface == SurfaceMode::Auto &&
            plan_.openings().fillsPossible();
   }
 
@@ -272,8 +283,8 @@ private:
   // --- 4. Certain faces
 
   bool mayLeaveOut() {
-    return removesIntersections(options_) && options_.surface != SurfaceMode::Closed &&
-           options_.smoothing == 0 && !best_->part.intersecting.pairs.empty();
+    return best_->intersecting() > 0 && options_.smoothing == 0 &&
+           mayLeaveOutTriangles(options_, best_->part);
   }
 
   std::optional<Outcome> meshCertainFaces() {
@@ -334,9 +345,10 @@ private:
   StageClock& clock_;
   std::optional<Outcome> best_;
   bool are_faces_tried_ = false;
-  std::optional<bool> save_handles_;
+  std::optional<bool> are_handles_sure_;
   std::optional<Start> faces_;
   std::optional<Start> sphere_;
+  std::optional<std::optional<Start>> cut_;  ///< empty: there is none
   Embedding embedding_;
 };
 
