@@ -62,6 +62,9 @@ struct Opening {
   /// The loop lies in a plane and is no rim of a sheet: it may surround a flat face of the surface
   /// without points inside.
   bool is_flat = false;
+  /// The longest opening, and all of the surface is on one side of it, like an object without
+  /// points on its base.
+  bool is_base = false;
   bool is_filled = false;        ///< the mesh has triangles over it
   std::vector<Index> triangles;  ///< of the mesh over a filled opening; in one opening only
 

@@ -154,6 +154,8 @@ constexpr ResultField visitFields(const Opening*, const Visit& visit) {
   visit({"is_certain", "certainty is 1 and it is not flat"}, &Opening::isCertain);
   visit({"is_flat", "the loop lies in a plane, and is no rim of a sheet: perhaps a flat face"},
         &Opening::is_flat);
+  visit({"is_base", "the longest opening, with all of the surface on one side of it"},
+        &Opening::is_base);
   visit({"center", "mean of the loop", 1}, &Opening::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Opening::width);
   visit({"spacing", "mean point spacing at the loop", 1}, &Opening::spacing);

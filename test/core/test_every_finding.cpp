@@ -33,6 +33,7 @@ const std::map<std::string, Positions>& clouds() {
       {"eight", inARow(8, 3.0, spiralSphere(200))},
       {"two too small", twoSpheres(30, 30, 6.0)},
       {"bowl", hemisphere(800)},
+      {"no base", pointsWhere(ellipsoid(3000), [](const auto& p) { return p.z() > -0.4; })},
       {"holes", sphereWithHoles(1500, 3, 0.4)},
       {"patch", flatPatch(15)},
       {"torus", torusCloud(40, 16)},
@@ -112,6 +113,18 @@ TEST(EveryFinding, OfWhatAnOptionForbidsNamesThatOption) {
     options.outliers = OutlierMode::None;
     EXPECT_EQ(named("strays outside", options), "outliers");
   }
+}
+
+TEST(EveryFinding, ABaseThatIsClosedOnRequestIsSound) {
+  const Positions& points = clouds().at("no base");
+  const Surface open = surfaceOf(points);
+  expectSound(open, 0, 1);
+  ASSERT_EQ(open.findings.size(), 1U);
+  EXPECT_EQ(open.findings[0].option, "surface");
+  const Surface closed = surfaceOf(points, given("surface", "closed"));
+  expectSound(closed, 0, 0);
+  EXPECT_EQ(closed.vertexCount(), static_cast<std::size_t>(points.cols()));
+  EXPECT_TRUE(closed.findings.empty());
 }
 
 TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {

@@ -97,9 +97,8 @@ public:
   bool isNear(const Eigen::Vector3d& point) const {
     return (point - center_).norm() <= 1.01 * radius_;
   }
-  double heightOf(const Eigen::Vector3d& point) const {
-    return std::abs(normal_.dot(point - center_));
-  }
+  /// Over the plane of the loop, negative on its other side.
+  double heightOf(const Eigen::Vector3d& point) const { return normal_.dot(point - center_); }
 
 private:
   Eigen::Vector3d center_;
@@ -114,8 +113,21 @@ bool isRimOfSheet(const Positions& points, const Opening& opening) {
   constexpr double max_height = 0.25;
   const LoopDisc disc(points, opening);
   return std::all_of(points.colwise().begin(), points.colwise().end(), [&](const auto& point) {
-    return disc.isNear(point) && disc.heightOf(point) <= max_height * opening.width;
+    return disc.isNear(point) && std::abs(disc.heightOf(point)) <= max_height * opening.width;
   });
+}
+
+/// Whether the surface is on one side of an opening, up to a bulge.
+bool isBase(const Positions& points, const Opening& opening) {
+  constexpr double max_height = 0.25;
+  const LoopDisc disc(points, opening);
+  double lowest = 0.0;
+  double highest = 0.0;
+  for (const auto& point : points.colwise()) {
+    lowest = std::min(lowest, disc.heightOf(point));
+    highest = std::max(highest, disc.heightOf(point));
+  }
+  return std::min(-lowest, highest) <= max_height * opening.width;
 }
 
 /// The openings that are seen.
@@ -144,9 +156,13 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   std::stable_sort(
       result.openings.begin(), result.openings.end(),
       [](const Opening& a, const Opening& b) { return a.boundary_length > b.boundary_length; });
-  if (!result.openings.empty() && isRimOfSheet(points, result.openings.front())) {
-    result.openings.front().certainty = 1.0;
-    result.openings.front().is_flat = false;
+  if (!result.openings.empty()) {
+    Opening& longest = result.openings.front();
+    longest.is_base = isBase(points, longest);
+    if (isRimOfSheet(points, longest)) {
+      longest.certainty = 1.0;
+      longest.is_flat = false;
+    }
   }
   return result;
 }
@@ -209,7 +225,7 @@ std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<O
       if (disc.isNear(others.col(i)))
         near.push_back(static_cast<Index>(i));
     if (std::all_of(near.begin(), near.end(), [&](Index i) {
-          return disc.heightOf(others.col(i)) <= max_height * opening.spacing;
+          return std::abs(disc.heightOf(others.col(i))) <= max_height * opening.spacing;
         }))
       found.insert(found.end(), near.begin(), near.end());
   }

@@ -97,6 +97,24 @@ std::optional<Finding> handlesOf(const Surface& result, const Options& given) {
   return may_have ? shown(text, given, "handles", "auto", true) : Finding{text, "", "", true};
 }
 
+/// Whether an opening is the base of an object, which may be closed.
+bool isSmallBase(const Opening& opening, const Surface& result) {
+  // Of a view of one side, the opening is as large as the mesh.
+  constexpr double max_area = 1.0 / 3.0;
+  return opening.is_base && opening.area <= max_area * result.measures.area;
+}
+
+/// A base without points, which is left open.
+std::optional<Finding> baseOf(const Surface& result, const Options& given) {
+  if (withTopology(given).surface != SurfaceMode::Auto)
+    return std::nullopt;
+  for (const Opening& opening : result.openings)
+    if (!opening.is_filled && isSmallBase(opening, result))
+      return Finding{"the base of " + counted(opening.loop.size(), "point") + " is open", "surface",
+                     "closed", false};
+  return std::nullopt;
+}
+
 /// Certain openings that the mesh fills are a fault unless the options ask for it; without any,
 /// possible ones are reported.
 std::optional<Finding> filledOf(const Surface& result, const Options& given) {
@@ -111,8 +129,12 @@ std::optional<Finding> filledOf(const Surface& result, const Options& given) {
   const auto is_possible = [](const Opening& opening) {
     return opening.certainty >= min_certainty && !opening.is_flat;
   };
+  const auto is_wanted = [&](const Opening& opening) {
+    return given.surface == SurfaceMode::Closed && isSmallBase(opening, result);
+  };
   for (const Opening& opening : result.openings)
-    if (opening.is_filled && (certain > 0 ? opening.isCertain() : is_possible(opening))) {
+    if (opening.is_filled && !is_wanted(opening) &&
+        (certain > 0 ? opening.isCertain() : is_possible(opening))) {
       ++count;
       points = std::max(points, opening.loop.size());
     }
@@ -159,6 +181,8 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
     findings.push_back(partsOf(diagnosis, given));
   if (const std::optional<Finding> filled = filledOf(result, given))
     findings.push_back(*filled);
+  if (const std::optional<Finding> base = baseOf(result, given))
+    findings.push_back(*base);
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
   if (diagnosis.fills_volume)

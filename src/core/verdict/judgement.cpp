@@ -49,9 +49,11 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
   const FractionReport report = reportOf(execution, "quality");
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
+  of_diagnosis.may_be_one_sided =
+      mesh.openings.isOneSided() &&
+      (mesh.mesh.hasOpen() || !finished.intersecting.pairs.empty() || mesh.left_out_triangles > 0);
   SurfaceDiagnosis diagnosis = diagnoseSurface(points, triangles, graph.graph, graph.bridges,
                                                finished.openings, of_diagnosis, options.threads);
-  diagnosis.is_one_sided = mesh.openings.isOneSided();
   diagnosis.is_on_lines = areOnLines(points, graph.graph);
   reportFraction(report, 0.5);
   Surface result = judge(std::move(finished), std::move(diagnosis), options);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -142,6 +143,47 @@ void findBridges(const MeshAndGraph& surface, const Graph& graph,
   result.joined_parts = apart.empty() ? 0 : std::max<std::size_t>(2, separate.size());
 }
 
+// --- One side ------------------------------------------------------------------------------------
+
+/// Whether the mesh, which is oriented, is torn where the surface turns over: edges of the graph
+/// that lie in the surface join vertices with opposite normals, far from each other on the mesh.
+bool isTorn(const MeshAndGraph& surface) {
+  // A shorter tear is none for sure.
+  constexpr std::size_t min_edges = 10;
+  constexpr double min_cosine = 0.9;
+  constexpr double max_slope = 0.3;
+  const auto normal = [&](Index v) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    surface.forEachTriangle(
+        v, [&](Index t, Index) { sum += areaNormal(surface.points, surface.triangles, t); });
+    return sum.stableNormalized().eval();
+  };
+  // Neighbours on the mesh, or with a common one.
+  const auto are_near = [&](Index v, Index w) {
+    const auto ring_of = [&](Index of) {
+      std::vector<Index> ring{of};
+      surface.forEachTriangle(of, [&](Index, Index next) { ring.push_back(next); });
+      sortUnique(ring);
+      return ring;
+    };
+    const std::vector<Index> of_v = ring_of(v);
+    const std::vector<Index> of_w = ring_of(w);
+    return std::any_of(of_v.begin(), of_v.end(),
+                       [&](Index x) { return std::binary_search(of_w.begin(), of_w.end(), x); });
+  };
+  std::size_t edges = 0;
+  for (const Index v : surface.graph.nodes())
+    for (const Index w : surface.graph.row(v)) {
+      const Eigen::Vector3d a = normal(v);
+      const Eigen::Vector3d b = normal(w);
+      const Eigen::Vector3d d = (surface.points.col(w) - surface.points.col(v)).stableNormalized();
+      const double slope = std::max(std::abs(a.dot(d)), std::abs(b.dot(d)));
+      if (v < w && a.dot(b) < -min_cosine && slope < max_slope && !are_near(v, w))
+        ++edges;
+    }
+  return edges >= min_edges;
+}
+
 // --- All together --------------------------------------------------------------------------------
 
 /// The edges of a graph that are among the kThinnedDegree shortest of one of their ends, and the
@@ -218,6 +260,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   result.edges_outside_graph = static_cast<double>(differences.outside_graph) /
                                (1.5 * static_cast<double>(triangles.cols()));
   findBridges(surface, graph, bridges, bridge_edges, result);
+  result.is_one_sided = options.may_be_one_sided && isTorn(surface);
   if (options.mark_triangles)
     result.triangle_marks = marksOf(surface, result, openings, differences.triangles);
   shorten(result.bridges, options.max_vertices);

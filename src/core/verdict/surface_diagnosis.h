@@ -12,6 +12,7 @@ namespace spherical_param::internal {
 struct DiagnosisOptions {
   std::size_t max_vertices = 64;  ///< maximum number of vertices listed with each finding
   bool mark_triangles = false;    ///< fill SurfaceDiagnosis::triangle_marks
+  bool may_be_one_sided = false;  ///< the cloud may sample a surface with one side
 };
 
 /// Compares a mesh with the graph of its cloud: parts that it joins, edges that leave the graph.

@@ -31,6 +31,23 @@ TEST(Openings, HaveTheSizesOfTheHole) {
   EXPECT_FALSE(openingsOf(sphereWithHoles(2000, 1, 0.5)).front().is_flat);
 }
 
+TEST(Openings, AreABaseIfAllOfTheSurfaceIsOnOneSide) {
+  const auto is_base = [](double height) {
+    const Positions above =
+        pointsWhere(spiralSphere(2000), [=](const auto& p) { return p.z() > height; });
+    return openingsOf(above).front().is_base;
+  };
+  EXPECT_TRUE(is_base(-0.9));
+  EXPECT_TRUE(is_base(0.0));
+  // Another sphere hangs lower.
+  Positions lower = spiralSphere(1000);
+  lower.row(0).array() += 2.5;
+  lower.row(2).array() -= 1.5;
+  const Positions above =
+      pointsWhere(spiralSphere(2000), [](const auto& p) { return p.z() > -0.9; });
+  EXPECT_FALSE(openingsOf(horizontally(above, lower)).front().is_base);
+}
+
 /// Points of a hexagonal grid of distance 1, in 20 rows, that are kept.
 Positions hexagonalGrid(Index columns, const std::function<bool(Index)>& is_kept) {
   std::vector<Eigen::Vector3d> points;

@@ -122,6 +122,29 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   });
 }
 
+/// A base with an area of so much of the mesh.
+void addBase(Surface& result, double area, bool is_filled) {
+  result.measures.area = 10.0;
+  Opening opening = filledOpening(61);
+  opening.is_filled = is_filled;
+  opening.is_base = true;
+  opening.area = area;
+  result.openings = {opening};
+}
+
+TEST(Findings, AnOpenBaseNamesTheOptionThatClosesIt) {
+  expectFindings({{{"the base of 61 points is open", "surface", "closed", false},
+                   [](Surface& r) { addBase(r, 3.0, false); }},
+                  // What one place sees has an opening as large as itself.
+                  {{}, [](Surface& r) { addBase(r, 4.0, false); }}});
+  expectFindings({{{}, [](Surface& r) { addBase(r, 3.0, false); }}}, given("surface", "open"));
+  // Who closes it knows.
+  expectFindings({{{}, [](Surface& r) { addBase(r, 3.0, true); }},
+                  {{"opening of 61 points, filled", "surface", "open", true},
+                   [](Surface& r) { addBase(r, 4.0, true); }}},
+                 given("surface", "closed"));
+}
+
 TEST(Findings, AHandleThatAnOptionCutsNamesThatOption) {
   expectFindings({{{"1 handle, cut: the mesh is a sphere", "handles", "auto", true},
                    [](Surface& r) { r.diagnosis.cut_handles = 1; }}},

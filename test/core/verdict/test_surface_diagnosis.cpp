@@ -1,6 +1,7 @@
 #include "surface_diagnosis.h"
 
 #include "graphs.h"
+#include "handle_shapes.h"
 #include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
@@ -78,6 +79,31 @@ TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
     EXPECT_TRUE(diagnosis.bridges.empty());
     EXPECT_EQ(diagnosis.joined_parts, 0U);
   }
+}
+
+TEST(SurfaceDiagnosis, OneSideNeedsAMeshThatIsTornWhereItTurnsOver) {
+  const int rings = 160;
+  const int across = 12;
+  const Positions band = moebiusBand(rings, across);
+  Triangles torn(3, 2 * (rings - 1) * (across - 1));
+  Eigen::Index t = 0;
+  for (int i = 0; i + 1 < rings; ++i)
+    for (int j = 0; j + 1 < across; ++j) {
+      const int a = i * across + j;
+      torn.col(t++) << a, a + across, a + 1;
+      torn.col(t++) << a + 1, a + across, a + across + 1;
+    }
+  DiagnosisOptions options;
+  const auto is_one_sided = [&](const Positions& points, const Triangles& triangles) {
+    const NeighborGraph graph = localDelaunayGraph(points);
+    return diagnoseSurface(points, triangles, graph.graph, {}, {}, options, 1).is_one_sided;
+  };
+  EXPECT_FALSE(is_one_sided(band, torn));
+  options.may_be_one_sided = true;
+  EXPECT_TRUE(is_one_sided(band, torn));
+  // The two sides of a thin plate, and a rim, are on no one sheet.
+  const Positions plate = Eigen::Vector3d(1.0, 1.0, 0.05).asDiagonal() * spiralSphere(1200);
+  EXPECT_FALSE(is_one_sided(plate, triangulateSphere(spiralSphere(1200))));
 }
 
 TEST(SurfaceDiagnosis, FilledOpeningsAreMarkedIfTheyAreCertain) {
