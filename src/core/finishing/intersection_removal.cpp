@@ -233,11 +233,12 @@ private:
                           countOf(faceOf(points_, scale_, {c, d, b}, o), t);
     if (crossings > 0)
       return 0;
-    const int before_flip = lift(t) + lift(o);
+    int change = -lift(t);
+    change -= lift(o);
     mesh_.flipFree(t, corner);
-    lower(t);
-    lower(o);
-    return -before_flip;
+    change += lower(t);
+    change += lower(o);
+    return change;
   }
 
   std::size_t random(std::size_t end) { return (random_ = splitmix64(random_)) % end; }
@@ -288,9 +289,12 @@ private:
     }
     const auto end = near.begin() + std::min<std::ptrdiff_t>(32, near.end() - near.begin());
     std::partial_sort(near.begin(), end, near.end());
-    std::pair<int, Index> best{std::numeric_limits<int>::max(), -1};
+    constexpr int impossible = 1000000;
+    std::pair<int, Index> best{impossible, -1};
     for (auto place = near.begin(); place != end && best.first > 0; ++place)
       best = std::min(best, {crossingsIn(place->second, v), place->second});
+    if (best.second < 0)
+      return impossible;
     int change = -lift(best.second);
     for (const Index part : mesh_.split(best.second, v)) {
       if (part != best.second)
