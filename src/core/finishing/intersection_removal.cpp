@@ -57,7 +57,7 @@ public:
   Removal run(const Removal& most, SphereMesh& result) {
     // Small moves are cheap, and leave few places for large ones. If not, it is a tangle.
     constexpr std::size_t most_places = 100;
-    for (const std::size_t largest : {8, 32, 128})
+    for (const std::size_t largest : {8U, 32U, 128U})
       if (largest == 8 || due_.size() <= most_places)
         clear([&](Index t) { return moveNear(t, largest); });
     result = mesh_;
