@@ -28,7 +28,7 @@ struct Removal {
 /// 4. a vertex is left out even if as many intersections are left.
 ///
 /// \param points 3 x n.
-/// \param pairs  all that intersect, of the triangles of `mesh`; too many are left alone.
+/// \param pairs  all that intersect, of the triangles of `mesh`.
 /// \param most   that may be left out.
 /// \param mesh   changed.
 /// \return what was left out.

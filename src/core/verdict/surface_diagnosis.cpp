@@ -152,12 +152,13 @@ bool isTorn(const MeshAndGraph& surface) {
   constexpr std::size_t min_edges = 10;
   constexpr double min_cosine = 0.9;
   constexpr double max_slope = 0.3;
-  const auto normal = [&](Index v) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    surface.forEachTriangle(
-        v, [&](Index t, Index) { sum += areaNormal(surface.points, surface.triangles, t); });
-    return sum.stableNormalized().eval();
-  };
+  Positions normals = Positions::Zero(3, surface.points.cols());
+  for (const Index v : surface.graph.nodes()) {
+    surface.forEachTriangle(v, [&](Index t, Index) {
+      normals.col(v) += areaNormal(surface.points, surface.triangles, t);
+    });
+    normals.col(v).stableNormalize();
+  }
   // Neighbours on the mesh, or with a common one.
   const auto are_near = [&](Index v, Index w) {
     const auto ring_of = [&](Index of) {
@@ -174,8 +175,8 @@ bool isTorn(const MeshAndGraph& surface) {
   std::size_t edges = 0;
   for (const Index v : surface.graph.nodes())
     for (const Index w : surface.graph.row(v)) {
-      const Eigen::Vector3d a = normal(v);
-      const Eigen::Vector3d b = normal(w);
+      const auto a = normals.col(v);
+      const auto b = normals.col(w);
       const Eigen::Vector3d d = (surface.points.col(w) - surface.points.col(v)).stableNormalized();
       const double slope = std::max(std::abs(a.dot(d)), std::abs(b.dot(d)));
       if (v < w && a.dot(b) < -min_cosine && slope < max_slope && !are_near(v, w))

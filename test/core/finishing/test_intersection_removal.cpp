@@ -20,7 +20,6 @@ struct Pierced {
   std::size_t intersections() const {
     return findSelfIntersections(points, mesh.surfaceTriangles()).size();
   }
-  MeshTopology topology() const { return checkTopology(mesh.surfaceTriangles(), 400); }
 
   Positions points = spiralSphere(400);
   SphereMesh mesh;
