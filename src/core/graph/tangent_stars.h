@@ -36,6 +36,10 @@ struct Stars {
 /// directions alike, too few points), the star is that of the Gabriel graph of the list (Gabriel
 /// and Sokal 1969).
 ///
+/// Where stars disagree over an area because of another sheet beside theirs, they are found without
+/// the candidates on that sheet, and kept if more edges are in the stars of both ends then. This
+/// needs a search. Not guaranteed for random samples of sheets closer than two spacings.
+///
 /// \param points    3 x n, finite, distinct.
 /// \param neighbors of the nodes.
 /// \param execution threads, progress

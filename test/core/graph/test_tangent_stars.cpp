@@ -101,5 +101,31 @@ TEST(TangentStars, SearchIsAskedOnceARoundForThePointsThatAreNotCertified) {
   EXPECT_EQ(countUncertified(stars), static_cast<Index>(uncertified(32).size()));
 }
 
+/// Number of edges of the agreed graph that join a point before `first` and one from it on.
+Index countAcross(const Positions& points, Index first) {
+  const Stars stars =
+      test::starsOf(points, bruteForceNeighbors(points, 12), makeNeighborSearch(points));
+  Index count = 0;
+  for (const Index i : indicesOf(stars))
+    for (const Index j : stars.of(i))
+      count += i < first && j >= first && stars.of(j).contains(i) ? 1 : 0;
+  return count;
+}
+
+TEST(TangentStars, SeparateSheetsThatAreNearerThanTwoSpacings) {
+  // Two spheres with points 1 apart, their radii 1.3 and 1.6 spacings apart.
+  constexpr double radius = 9.0;
+  for (const double gap : {1.3, 1.6}) {
+    const auto sphere = [](double r) -> Positions {
+      return r * spiralSphere(static_cast<Index>(4.0 * kPi * r * r));
+    };
+    const Positions inner = sphere(radius);
+    const Positions outer = sphere(radius + gap);
+    Positions both(3, inner.cols() + outer.cols());
+    both << inner, outer;
+    EXPECT_EQ(countAcross(both, static_cast<Index>(inner.cols())), 0) << gap;
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::test
