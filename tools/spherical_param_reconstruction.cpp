@@ -30,7 +30,7 @@ ToolText toolText() {
           {{"The surfaces of a scan", "scan.ply mesh.ply"},
            {"With its map to the sphere and a page to look at",
             "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
-           {"A mesh of a noisy scan", "scan.ply mesh.ply -consolidation auto"},
+           {"A mesh of a noisy scan, through its points", "scan.ply mesh.ply -consolidation none"},
            {"One closed surface through every point", "scan.ply mesh.ply -topology sphere"}}};
 }
 
@@ -188,27 +188,6 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
   return files;
 }
 
-/// How far consolidation moved points; empty without.
-std::string movedBy(const Settings& settings, const std::vector<Surface>& surfaces) {
-  if (settings.reconstruction.options.consolidation == ConsolidationMode::None) {
-    return {};
-  }
-  double points = 0.0;
-  double noise = 0.0;
-  double mean = 0.0;
-  double most = 0.0;
-  for (const Surface& surface : surfaces) {
-    const auto count = static_cast<double>(surface.inputs.size());
-    const ConsolidationReport& moved = *surface.consolidation;
-    points += count;
-    noise += count * moved.noise;
-    mean += count * moved.mean_displacement;
-    most = std::max(most, moved.max_displacement);
-  }
-  return "by " + formatted(mean / points, 3) + " on average, at most " + formatted(most, 3) +
-         "; the noise is " + formatted(noise / points, 3);
-}
-
 /// Prints what was made of each surface.
 Summary summaryOf(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
@@ -225,7 +204,6 @@ Summary summaryOf(const Settings& settings, const CloudReconstruction& cloud, Co
   Summary summary = summaryOf(settings.input, cloud);
   summary.made = meshSize(vertices, triangles);
   summary.written = writtenFiles(settings, cloud);
-  summary.moved = movedBy(settings, surfaces);
   return summary;
 }
 

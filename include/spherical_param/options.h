@@ -52,8 +52,9 @@ enum class ViewMode {
 
 /// Whether points are consolidated before meshing.
 enum class ConsolidationMode {
-  None,  ///< the mesh goes through the given points
-  Auto,  ///< points are moved to the sampled surface and merged within their noise
+  AsTopology,  ///< for TopologyMode::Scan as Auto those parts that are noisy, else None
+  None,        ///< the mesh goes through the given points
+  Auto,        ///< points are moved to the sampled surface and merged within their noise
 };
 
 /// How a cloud is meshed.
@@ -158,7 +159,7 @@ struct Options : Execution {
   /// PartsMode::All.
   int min_points = 50;
   /// Whether points are consolidated before meshing.
-  ConsolidationMode consolidation = ConsolidationMode::None;
+  ConsolidationMode consolidation = ConsolidationMode::AsTopology;
   EmbeddingOptions embedding;  ///< how the graph is embedded
   /// Strength of smoothing, in steps of the paper's section 4.2; [0, 10000], 0: none.
   /// Method::Default then optimises the mesh on the smoothed points.

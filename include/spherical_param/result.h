@@ -112,11 +112,9 @@ struct SurfaceDiagnosis {
 
 /// What consolidation found and did.
 struct ConsolidationReport {
-  double noise = 0.0;      ///< median distance of the points from the surface [unit of the input]
-  std::size_t merged = 0;  ///< points merged into others, exact duplicates not counted
-  double max_displacement = 0.0;   ///< of a point, also by merging [unit of the input]
-  double mean_displacement = 0.0;  ///< over the points [unit of the input]
-  double rms_displacement = 0.0;   ///< over the points [unit of the input]
+  double noise = 0.0;        ///< median distance of the points from the surface [unit of the input]
+  std::size_t merged = 0;    ///< points merged into others, exact duplicates not counted
+  double distance_95 = 0.0;  ///< of 95 % of the points from the mesh, at most [unit of the input]
 };
 
 /// Why the work on an embedding ended.

@@ -203,9 +203,7 @@ constexpr ResultField visitFields(const ConsolidationReport*, const Visit& visit
   using Of = ConsolidationReport;
   visit({"noise", "median distance of the points from the surface", 1}, &Of::noise);
   visit({"merged", "points merged into others, exact duplicates not counted"}, &Of::merged);
-  visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
-  visit({"mean_displacement", "over the points", 1}, &Of::mean_displacement);
-  visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
+  visit({"distance_95", "of 95 % of the points from the mesh, at most", 1}, &Of::distance_95);
   return {"Consolidation", "What consolidation found and did."};
 }
 

@@ -199,11 +199,15 @@ std::vector<OptionRow> pointRows() {
                number("min_points",
                       "minimum number of points of a part; smaller parts are left out", Expert, 4,
                       kMaxInt, &Options::min_points)),
-      choice<ConsolidationMode>(
-          "consolidation",
-          "auto: move noisy points to the sampled surface and merge them within their noise",
-          Everybody, {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
-          &Options::consolidation),
+      choice<ConsolidationMode>("consolidation",
+                                "move points to the sampled surface, and merge them within their "
+                                "noise; topology: those of "
+                                "noisy parts of a scan",
+                                Everybody,
+                                {{"topology", ConsolidationMode::AsTopology},
+                                 {"none", ConsolidationMode::None},
+                                 {"auto", ConsolidationMode::Auto}},
+                                &Options::consolidation),
   };
 }
 
@@ -402,6 +406,9 @@ Options withTopology(Options options) {
   };
   if (!is_scan && (options.view == ViewMode::Auto || options.method == Method::Paper))
     options.view = ViewMode::None;
+  // Of a scan, noise decides.
+  if (!is_scan && options.consolidation == ConsolidationMode::AsTopology)
+    options.consolidation = ConsolidationMode::None;
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);
   resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);

@@ -190,12 +190,25 @@ Surface meshConsolidated(Selection& all, std::size_t part, const Options& option
   Selection selection(consolidation.points, as_is, by_tree, merged, clock, none);
   Surface surface = meshAsIs(selection, 0, options, clock);
   toInput(consolidation, surface);
+  constexpr double most = 0.95;
+  surface.consolidation->distance_95 =
+      distanceWithin(most, all.pointsOf(part), surface.vertex_of_input, surface.points,
+                     surface.triangles, options.threads);
   return surface;
+}
+
+bool isNoisy(Selection& selection, std::size_t part, StageClock& clock) {
+  const Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
+  clock.begin("consolidation");
+  return isNoisy(neighborhoods.points(), neighborhoods.neighbors(), neighborhoods.stars());
 }
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options, StageClock& clock,
                  LeftOut& left_out) {
-  auto* const mesh = options.consolidation == ConsolidationMode::Auto ? meshConsolidated : meshAsIs;
+  const bool is_consolidated =
+      options.consolidation == ConsolidationMode::Auto ||
+      (options.consolidation == ConsolidationMode::AsTopology && isNoisy(selection, part, clock));
+  auto* const mesh = is_consolidated ? meshConsolidated : meshAsIs;
   Surface surface = mesh(selection, part, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(

@@ -55,9 +55,6 @@ void Console::summary(const Summary& summary) {
   line("made", summary.made);
   line("time", formatted(secondsSince(start_), 3) + " s");
   line("left out", summary.left_out);
-  if (!summary.moved.empty()) {
-    line("moved", summary.moved);
-  }
   line("written", files);
 }
 

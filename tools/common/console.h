@@ -25,7 +25,6 @@ struct Summary {
   std::string made;                  ///< the size of the output
   std::string left_out;              ///< of the input
   std::vector<std::string> written;  ///< names of files
-  std::string moved = {};            ///< how far points were; empty: none, and no line
 };
 
 /// The standard output of a tool: pairs of label and value, and stages of work with their time. On

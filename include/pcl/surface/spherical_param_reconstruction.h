@@ -42,6 +42,9 @@ namespace pcl {
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
  * are left out; exact duplicates become one vertex, at the first of them; both are counted.
+ * Therefore points are not consolidated by default, unlike with the tools: the polygons of
+ * consolidated points mean nothing on the input cloud. For a noisy scan, set
+ * setConsolidation(ConsolidationMode::AsTopology).
  *
  * Failure (null or empty cloud, an index out of range, fewer than 4 distinct finite points, all
  * points in one plane, an option out of range, cancellation) leaves an empty mesh and prints one
@@ -111,9 +114,10 @@ public:
   /** \brief Get the value of setViewpoint(). \return it */
   const Eigen::Vector3d& getViewpoint() const { return options_.viewpoint; }
 
-  /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
-   * before meshing: for noisy and for merged scans.
-   * \param[in] mode default ConsolidationMode::None
+  /** \brief Set whether points are moved to the sampled surface and merged within their noise before
+   * meshing: for noisy and for merged scans.
+   * \param[in] mode AsTopology: those of noisy parts of a scan; Auto: all. Default: None, since
+   * polygons index the input cloud.
    * \note Polygons then index the first of merged points; a pcl::PolygonMesh has it where it was
    * moved, Surface::consolidation of getResult() the figures. The search object is used for
    * setOutliers() and setParts() alone. */

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "neighbor_search.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
+#include "tangent_stars.h"
 
 #include <vector>
 
@@ -13,26 +15,46 @@ struct Consolidation {
   Positions points;                   ///< 3 x m, m <= n, distinct [unit of the input]
   std::vector<Index> point_of_input;  ///< n entries: point of each input point
   std::vector<Index> distinct_at;     ///< m entries: number of distinct input points there
-  ConsolidationReport report;         ///< noise, merging, displacements
+  ConsolidationReport report;         ///< noise, merging
 };
 
 /// Moves noisy points to the sampled surface and merges points that are closer than their noise, so
 /// that the layers of merged scans become one.
 ///
-/// Each point moves to the quadric of moving least squares through its neighbours (Levin 2004,
-/// "Mesh-independent surface interpolation"). Leave-one-out cross-validation chooses among three
-/// sizes of neighbourhoods. Where noise far above the spacing makes neighbourhoods isotropic, about
-/// three points at a time are merged first, which averages the noise.
+/// Points move to the quadric of moving least squares through their neighbours (Levin 2004,
+/// "Mesh-independent surface interpolation"), twice. Neighbourhoods are at least as large as they
+/// must be to be flat; from there, leave-one-out cross-validation chooses among four sizes. Where
+/// they are large, fewer points are moved; at the end, those that noise does not tell apart are
+/// merged, and each of the others with the nearest.
 ///
 /// \param points 3 x n, finite.
 /// \param execution threads, progress
 /// \return the points, ordered by the first input point of each; the same, bit by bit, for any
 ///         number of threads. Fewer than 20 distinct points are returned as they are.
 /// \throw InvalidInput for a point that is not finite; Cancelled.
-/// Cost: that of the 60 nearest neighbours and of four fits of a quadric for each point.
+/// Cost: O(n log n), some 250 neighbours in fits of quadrics for each point.
 ///
 /// No guarantees: edges are rounded over the size of the neighbourhood. Leave out outliers before,
 /// \see findOutliers. Isolated points stay where they are.
 Consolidation consolidate(const Positions& points, const Execution& execution = {});
+
+namespace internal {
+
+/// Whether the noise of a cloud is such that a mesh through its points folds.
+///
+/// \param points 3 x n, with their neighbours and stars. Too few points are not noisy.
+/// Cost: that of 400 fits, and of a comparison of the stars.
+bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars);
+
+/// The distance from a mesh within which a fraction of some points are, measured to the triangles
+/// around the vertex of each.
+///
+/// \param fraction        in [0, 1].
+/// \param vertex_of_point -1 of points that do not count.
+double distanceWithin(double fraction, const Positions& points,
+                      const std::vector<Index>& vertex_of_point, const Positions& vertices,
+                      const Triangles& triangles, int threads);
+
+}  // namespace internal
 
 }  // namespace spherical_param

@@ -46,8 +46,37 @@ public:
 
   NeighborLists search(const std::vector<Index>& queries, int count,
                        const Execution& execution) const;
+  /// The nearest point to each of some places.
+  std::vector<Index> nearestTo(const Positions& places, const Execution& execution) const;
 
 private:
+  struct Nearest {
+    std::vector<std::size_t> points;
+    std::vector<double> distances;
+  };
+
+  /// The `count` nearest points, the nearest first.
+  void findNearest(const double* place, std::size_t count, Nearest& nearest) const {
+    flann::KNNSimpleResultSet<double> found(count);
+    index_.findNeighbors(found, const_cast<double*>(place), flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    nearest.points.resize(count);
+    nearest.distances.resize(count);
+    found.copy(nearest.points.data(), nearest.distances.data(), count, true);
+  }
+
+  /// Calls work(query, memory) for each query.
+  template <typename Work>
+  void forEachQuery(std::size_t count, const Execution& execution, const Work& work) const {
+    // One by one: FLANN's own loop is a parallel region, which no exception may leave.
+    internal::forEachBlock(count, internal::threadCount(execution.threads, count),
+                           internal::reportOf(execution, "neighbors"),
+                           [&](std::size_t, std::size_t begin, std::size_t end) {
+                             Nearest nearest;
+                             for (std::size_t q = begin; q < end; ++q)
+                               work(q, nearest);
+                           });
+  }
+
   Positions points_;
   flann::KDTreeSingleIndex<SquaredDistance> index_;
 };
@@ -69,23 +98,20 @@ NeighborLists KdTree::search(const std::vector<Index>& queries, int count,
   for (std::size_t i = 1; i <= queries.size(); ++i)
     lists.offsets.push_back(i * size);
   lists.indices.resize(queries.size() * size);
-  // One by one: FLANN's own loop is a parallel region, which no exception may leave.
-  internal::forEachBlock(queries.size(), internal::threadCount(execution.threads, queries.size()),
-                         internal::reportOf(execution, "neighbors"),
-                         [&](std::size_t, std::size_t begin, std::size_t end) {
-                           const flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
-                           flann::KNNSimpleResultSet<double> nearest(size);
-                           std::vector<std::size_t> found(size);
-                           std::vector<double> distances(size);
-                           for (std::size_t q = begin; q < end; ++q) {
-                             nearest.clear();
-                             index_.findNeighbors(nearest, points_.col(queries[q]).data(),
-                                                  parameters);
-                             nearest.copy(found.data(), distances.data(), size, true);
-                             std::copy(found.begin(), found.end(), lists.indices.data() + q * size);
-                           }
-                         });
+  forEachQuery(queries.size(), execution, [&](std::size_t q, Nearest& nearest) {
+    findNearest(points_.col(queries[q]).data(), size, nearest);
+    std::copy(nearest.points.begin(), nearest.points.end(), lists.indices.data() + q * size);
+  });
   return lists;
+}
+
+std::vector<Index> KdTree::nearestTo(const Positions& places, const Execution& execution) const {
+  std::vector<Index> result(internal::columnCount(places));
+  forEachQuery(result.size(), execution, [&](std::size_t q, Nearest& nearest) {
+    findNearest(places.col(static_cast<Eigen::Index>(q)).data(), 1, nearest);
+    result[q] = static_cast<Index>(nearest.points.front());
+  });
+  return result;
 }
 
 }  // namespace
@@ -124,6 +150,11 @@ NeighborLists findNearestNeighbors(const Positions& points, int count, const Exe
     return {};
   const std::vector<Index> all = internal::firstIndices(internal::columnCount(points));
   return makeNeighborSearch(points, execution)(all, count);
+}
+
+std::vector<Index> findNearest(const Positions& points, const Positions& places,
+                               const Execution& execution) {
+  return KdTree(points).nearestTo(places, execution);
 }
 
 }  // namespace spherical_param

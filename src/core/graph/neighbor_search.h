@@ -55,4 +55,12 @@ struct Neighbors {
 NeighborLists findNearestNeighbors(const Positions& points, int count,
                                    const Execution& execution = {});
 
+/// The nearest point to each of some places.
+///
+/// \param points 3 x n, n >= 1, finite.
+/// \param places 3 x m, finite.
+/// \return m indices of points.
+std::vector<Index> findNearest(const Positions& points, const Positions& places,
+                               const Execution& execution);
+
 }  // namespace spherical_param

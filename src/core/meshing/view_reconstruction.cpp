@@ -26,7 +26,7 @@ namespace {
 
 /// The option that keeps a view from being meshed; none if there is none.
 const char* obstacleOf(const Options& options) {
-  return options.consolidation != ConsolidationMode::None  ? "consolidation"
+  return options.consolidation == ConsolidationMode::Auto  ? "consolidation"
          : options.smoothing > 0                           ? "smoothing"
          : options.outliers == OutlierMode::Deviation      ? "outliers"
          : options.intersections == IntersectionMode::Keep ? "intersections"

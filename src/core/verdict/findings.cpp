@@ -34,6 +34,13 @@ std::string percent(double fraction) {
   return text.data();
 }
 
+/// A length with three digits.
+std::string length(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
 /// Whether more triangles are left out than may intersect in a usable mesh.
 bool hasTangle(const Surface& result) {
   return 100 * result.left_out_triangles > static_cast<std::size_t>(result.triangles.cols());
@@ -322,6 +329,17 @@ void summarize(std::size_t parts_in_all, Result& result) {
     result.verdict[0] = result.verdict[0] == 'A' ? 'a' : result.verdict[0];
     result.verdict.insert(0, "Seen from one place: ");
   }
+  std::size_t merged = 0;
+  double distance = 0.0;
+  for (const Surface& surface : surfaces)
+    if (surface.consolidation) {
+      merged += surface.consolidation->merged;
+      distance = std::max(distance, surface.consolidation->distance_95);
+    }
+  if (distance > 0.0)
+    result.verdict.replace(result.verdict.size() - 1, 1,
+                           "; consolidated: " + counted(merged, "point") + " merged, 95 % within " +
+                               length(distance) + " of the mesh.");
   LeftOut stray = result.left_out;
   stray.not_finite.clear();
   if (const std::string text = stray.text(); !text.empty())

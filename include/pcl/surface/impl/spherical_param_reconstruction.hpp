@@ -35,6 +35,7 @@ template <typename PointInT>
 SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
   // The base class would give all points to the search, also those that are not finite.
   check_tree_ = false;
+  options_.consolidation = ConsolidationMode::None;
 }
 
 template <typename PointInT>
