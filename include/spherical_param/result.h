@@ -100,6 +100,12 @@ struct SurfaceDiagnosis {
   bool is_one_sided = false;        ///< like a Moebius strip or a Klein bottle; the mesh is torn
   bool is_on_lines = false;   ///< the points lie along lines, like contours, far from each other
   bool fills_volume = false;  ///< the points fill a volume: there is no surface
+  bool is_layered = false;    ///< the points are voxels, three or more across the surface
+  bool is_on_curves = false;  ///< the points lie along curves, like centre lines: no surface
+  bool is_scattered = false;  ///< a few points, which show no surface
+  /// Steps of the coordinates along the axes where single precision lost digits, if they are coarse
+  /// for the spacing; 0: none [unit of the input].
+  Eigen::Vector3d coarse_steps = Eigen::Vector3d::Zero();
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph; [0, 1].
   double edges_outside_graph = 0.0;
   /// For each triangle, the bits of all findings; empty without Options::details.

@@ -188,6 +188,11 @@ constexpr ResultField visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   visit({"is_one_sided", "like a Moebius strip or a Klein bottle"}, &Of::is_one_sided);
   visit({"is_on_lines", "the points lie along lines"}, &Of::is_on_lines);
   visit({"fills_volume", "the points fill a volume"}, &Of::fills_volume);
+  visit({"is_layered", "the points are voxels, three or more across the surface"}, &Of::is_layered);
+  visit({"is_on_curves", "the points lie along curves without a surface"}, &Of::is_on_curves);
+  visit({"is_scattered", "a few points, which show no surface"}, &Of::is_scattered);
+  visit({"coarse_steps", "of the coordinates where single precision lost digits; 0: none", 1},
+        &Of::coarse_steps);
   visit({"edges_outside_graph",
          "fraction of edges between points more than two steps apart in the graph"},
         &Of::edges_outside_graph);

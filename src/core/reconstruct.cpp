@@ -12,6 +12,7 @@
 #include "open_surface.h"
 #include "orientation.h"
 #include "paper_method.h"
+#include "point_spread.h"
 #include "power_of_two.h"
 #include "result_units.h"
 #include "selection.h"
@@ -20,6 +21,7 @@
 #include "stage_clock.h"
 #include "surface_plan.h"
 #include "view_reconstruction.h"
+#include "view_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +134,12 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
   return surface;
 }
 
+/// Whether coordinates have steps so coarse that they leave rows of points, not a surface.
+bool areRows(const Positions& points) {
+  constexpr double min_spacings = 1.0;
+  return !isElevationGrid(points) && !coarseSteps(points, min_spacings).isZero(0.0);
+}
+
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
 Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
@@ -144,8 +152,9 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     if (is_flat && !mayBeOpen(options))
       refuseFlat(options);
     NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
-    neighborhoods.release();
     OrderedPoints& nodes = neighborhoods.nodes();
+    const bool is_scattered = areScattered(nodes.points, neighborhoods.stars());
+    neighborhoods.release();
     // Only the tangent Delaunay graph shows openings.
     SurfacePlan plan = options.method == Method::Default
                            ? SurfacePlan(nodes.points, graph.graph, is_flat,
@@ -154,6 +163,13 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     if (round < max_rounds &&
         selection.complete(part, nodes, plan.openings().embeddedOpenings().openings))
       continue;
+    // Where there is no surface, nothing makes a good mesh: minutes would be lost.
+    const PointSpread spread = spreadOf(nodes.points);
+    const bool is_surface = spread == PointSpread::Surface && !areRows(nodes.points);
+    if (!is_surface) {
+      plan.setNoSurface();
+      clock.endPart();
+    }
     CloudInfo info = selection.infoOf(part);
     if (info.normals.cols() > 0)
       info.normals = Positions(info.normals(Eigen::all, nodes.input_of_node));
@@ -163,6 +179,12 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
         meshGraph(nodes.points, graph, std::move(plan), is_flat, info, options, clock);
     if (is_flat && surface.isClosed())
       refuseFlat(options);
+    SurfaceDiagnosis& diagnosis = surface.diagnosis;
+    diagnosis.fills_volume = spread == PointSpread::Volume;
+    diagnosis.is_layered = spread == PointSpread::Layers;
+    diagnosis.is_on_curves = spread == PointSpread::Curves;
+    diagnosis.is_scattered = is_scattered && surface.is_noisy;
+    surface.is_out_of_time = surface.is_out_of_time && (is_surface || options.time_limit);
     toInput(nodes, surface);
     return surface;
   }
@@ -324,6 +346,9 @@ namespace spherical_param {
 
 Result reconstruct(const Positions& points, const Options& given,
                    const NeighborSearchFactory& search_of, const CloudInfo& info) {
+  // Steps of real scans that still mesh well are up to 0.28 spacings, those that make rows of the
+  // points 0.6 to 3.6.
+  constexpr double coarse_step = 0.45;
   checkOptions(given);
   if (info.normals.cols() > 0 && info.normals.cols() != points.cols())
     throw InvalidInput("reconstruct: " + std::to_string(info.normals.cols()) + " normals of " +
@@ -340,6 +365,9 @@ Result reconstruct(const Positions& points, const Options& given,
   });
   result.stages = clock.take();
   for (Surface& surface : result.surfaces) {
+    const Positions sampled = points(Eigen::all, surface.inputs);
+    if (!internal::isElevationGrid(sampled))
+      surface.diagnosis.coarse_steps = internal::coarseSteps(sampled, coarse_step);
     surface.findings = internal::findingsOf(given, surface);
     surface.verdict = internal::verdictOf(options, surface);
   }

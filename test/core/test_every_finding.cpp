@@ -18,6 +18,29 @@ Positions ballOfGrid() {
   return positionsOf(points);
 }
 
+/// Voxels of a curved sheet three thick.
+Positions membrane() {
+  return gridOf(75, 25, [](int row, int x) {
+    return Eigen::Vector3d(x, row / 3, std::floor(4.0 * std::sin(x / 8.0)) + row % 3);
+  });
+}
+
+/// Straight lines across each other.
+Positions segments() {
+  const Positions from = randomCube(20, 1);
+  const Positions to = randomCube(20, 2);
+  return gridOf(20, 60, [&](int line, int i) -> Eigen::Vector3d {
+    return from.col(line) + i / 59.0 * (to.col(line) - from.col(line));
+  });
+}
+
+/// Terrain whose northing went through single precision.
+Positions coarseTerrain() {
+  const Positions fine = 0.5 * withNoise(elevationModel(20), 0.3, 1);
+  const Positions far = fine.colwise() + Eigen::Vector3d(0.0, 4.5e6, 0.0);
+  return far.cast<float>().cast<double>();
+}
+
 /// A capped tube by rings, `ratio` times as far apart as the points on them.
 Positions contours(double ratio, int rings) {
   const double step = 2.0 * kPi / 120;
@@ -46,6 +69,10 @@ const std::map<std::string, Positions>& clouds() {
       {"corners", cubeGrid(2)},
       {"elevations", elevationModel(10)},
       {"volume", ballOfGrid()},
+      {"membrane", membrane()},
+      {"segments", segments()},
+      {"coarse", coarseTerrain()},
+      {"scattered", randomCube(50, 1)},
       {"contours", contours(5.0, 12)},
       {"rings far apart", contours(20.0, 6)}};
   return all;
@@ -136,6 +163,10 @@ TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
   };
   EXPECT_NE(texts_of("noisy").find("the points are noisy"), std::string::npos);
   EXPECT_NE(texts_of("volume").find("the points fill a volume"), std::string::npos);
+  EXPECT_NE(texts_of("membrane").find("several layers of voxels"), std::string::npos);
+  EXPECT_NE(texts_of("segments").find("the points lie along curves"), std::string::npos);
+  EXPECT_NE(texts_of("coarse").find("y has steps of 0.5"), std::string::npos);
+  EXPECT_NE(texts_of("scattered").find("too few or too noisy"), std::string::npos);
   EXPECT_NE(texts_of("contours").find("the points lie along lines"), std::string::npos);
   for (const char* name : {"whole", "corners", "elevations", "torus", "patch"})
     EXPECT_EQ(texts_of(name), "") << name;

@@ -136,8 +136,8 @@ TEST(ResultFields, QuantitiesAreScaledByTheirPowersAndIndicesAreThoseOfVertices)
     EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
     ++quantities;
   });
-  // 21 of measures, 5 of smoothing, 12 of points, 7 and 5 of opening and bridge.
-  EXPECT_EQ(quantities, 50U);
+  // 21 of measures, 5 of smoothing, 12 of points, 7 and 5 of opening and bridge, 3 of steps.
+  EXPECT_EQ(quantities, 53U);
   using Indices = std::vector<Index>;
   EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
   EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));

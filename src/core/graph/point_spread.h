@@ -2,6 +2,7 @@
 
 #include "graph.h"
 #include "spherical_param/types.h"
+#include "tangent_stars.h"
 
 #include <vector>
 
@@ -14,9 +15,25 @@ namespace spherical_param::internal {
 /// The neighbours of a node, and theirs, without itself; ascending.
 std::vector<Index> withinTwoSteps(const Graph& graph, Index node);
 
-/// Whether points fill a volume: the number of points within a distance grows faster than its power
-/// 2.55. False of fewer than 500 points. Cost: O(n), of a sample.
-bool fillVolume(const Positions& points);
+/// What points sample.
+enum class PointSpread {
+  Surface,  ///< or too few points to tell
+  Volume,   ///< as dense everywhere inside; not of fewer than 500 points
+  Layers,   ///< voxels, three or more of them across the surface
+  Curves,   ///< in all directions, without a surface between them, like centre lines
+};
+
+/// Finds what points sample, from the neighbourhoods of some. Cost: O(n log n).
+PointSpread spreadOf(const Positions& points);
+
+/// The steps along the axes that single precision leaves of coordinates with a large offset; 0:
+/// none that are wider than a number of spacings, the distance to the sixth neighbour. An elevation
+/// grid may have such steps as well. Cost: O(n log n) if there are some.
+Eigen::Vector3d coarseSteps(const Positions& points, double min_spacings);
+
+/// Whether 20 to 100 points are too few or too noisy to show a surface: the nearest are in no
+/// plane, and their stars do not agree. \param stars of the points.
+bool areScattered(const Positions& points, const Stars& stars);
 
 /// Whether points lie along lines which are farther apart: the nearest neighbours of most points
 /// are in line with them. False of fewer than 100 points. \param graph of the points.

@@ -56,6 +56,7 @@ public:
       std::optional<Outcome> (Attempts::*mesh)();
     };
     static constexpr Row rows[] = {
+        {&Attempts::isNoSurface, &Attempts::meshCertainFaces},
         {&Attempts::areFacesGood, &Attempts::meshFaces},
         {&Attempts::mayBeSphere, &Attempts::meshSphere},
         {&Attempts::mayFacesHelp, &Attempts::meshFaces},
@@ -282,6 +283,12 @@ private:
 
   // --- 4. Certain faces
 
+  /// Whether certain faces are the first mesh: the others are tangles, and slow.
+  bool isNoSurface() {
+    return !plan_.samplesSurface() && removesIntersections(options_) && options_.smoothing == 0 &&
+           options_.surface != SurfaceMode::Closed;
+  }
+
   bool mayLeaveOut() {
     return best_->intersecting() > 0 && options_.smoothing == 0 &&
            mayLeaveOutTriangles(options_, best_->part);
@@ -295,7 +302,8 @@ private:
       faces = withoutHandles(points_, graph_, std::move(*faces));
     Outcome outcome;
     outcome.part.openings = plan_.openings();
-    outcome.part.optimization = best_->part.optimization;
+    if (best_)
+      outcome.part.optimization = best_->part.optimization;
     if (!faces || !takeCertainFaces(points_, *faces, clock_.execution(), outcome.part))
       return std::nullopt;
     outcome.genus = faces->genus();

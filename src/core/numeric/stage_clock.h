@@ -68,6 +68,9 @@ public:
     part_begin_ = Clock::now();
   }
 
+  /// Ends the time of the part: it gets the first mesh.
+  void endPart() { part_left_ = TimeLeft(0.0); }
+
   /// The part's share of the points of all parts.
   double share() const { return fraction_; }
   /// Time left for the part [s], minus what is kept, and a reserve for the check of the mesh: half

@@ -25,11 +25,15 @@ public:
   const OpenSurface& openings() const { return openings_; }
   /// \see meshFaces; nullptr if there is none.
   const SphereMesh* faces();
+  /// Whether the points sample a surface at all. \see spreadOf
+  bool samplesSurface() const { return samples_surface_; }
+  void setNoSurface() { samples_surface_ = false; }
 
 private:
   const Positions* points_ = nullptr;
   const Graph* graph_ = nullptr;
   OpenSurface openings_;
+  bool samples_surface_ = true;
   std::optional<RotationSystem> rotation_;  ///< until the faces are made
   std::optional<SphereMesh> faces_;
 };

@@ -28,6 +28,12 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
   return grouped(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
+std::string decimal(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", number);
+  return text.data();
+}
+
 std::string percent(double fraction) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2g %%", 100.0 * fraction);
@@ -46,11 +52,16 @@ bool hasTangle(const Surface& result) {
   return 100 * result.left_out_triangles > static_cast<std::size_t>(result.triangles.cols());
 }
 
+/// Whether what fills or lies along something else is meshed.
+bool isNoSurface(const SurfaceDiagnosis& diagnosis) {
+  return diagnosis.fills_volume || diagnosis.is_layered || diagnosis.is_on_curves;
+}
+
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
   return result.is_noisy && !result.consolidation && !result.smoothing && result.outliers.empty() &&
          result.diagnosis.bridges.empty() && result.diagnosis.cut_handles == 0 &&
-         !result.diagnosis.is_on_lines && !result.diagnosis.fills_volume;
+         !result.diagnosis.is_on_lines && !isNoSurface(result.diagnosis);
 }
 
 /// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
@@ -180,6 +191,7 @@ void addOfEmbedding(const Options& options, const Surface& result, std::vector<F
 std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
+  const bool is_consolidated = given.consolidation != ConsolidationMode::None;
   const std::size_t outliers = result.outliers.size();
   if (outliers > 0)
     findings.push_back(
@@ -192,8 +204,23 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
     findings.push_back(*base);
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (diagnosis.coarse_steps[axis] > 0.0)
+      findings.push_back({std::string(1, "xyz"[axis]) + " has steps of " +
+                          decimal(diagnosis.coarse_steps[axis]) +
+                          ": the file lost digits; subtract an offset before writing single "
+                          "precision"});
+  if (diagnosis.is_scattered)
+    findings.push_back({"the points are too few or too noisy to show a surface"});
   if (diagnosis.fills_volume)
-    findings.push_back({"the points fill a volume: they sample no surface"});
+    findings.push_back({"the points fill a volume: they sample no surface; take its boundary"});
+  else if (diagnosis.is_layered)
+    findings.push_back({"the points are several layers of voxels, no surface: take their boundary",
+                        is_consolidated ? "" : "consolidation", is_consolidated ? "" : "auto",
+                        false});
+  else if (diagnosis.is_on_curves)
+    findings.push_back({"the points lie along curves, like centre lines, without a surface "
+                        "between: put points around the curves"});
   else if (diagnosis.is_on_lines)
     findings.push_back({"the points lie along lines, and the surface between these is a guess"});
   if (const std::optional<Finding> handles = handlesOf(result, given))
@@ -230,7 +257,7 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   });
   for (Finding& finding : findings)
     finding.is_consequence =
-        (has_option || diagnosis.fills_volume) && finding.is_fault && finding.option.empty();
+        (has_option || isNoSurface(diagnosis)) && finding.is_fault && finding.option.empty();
   return findings;
 }
 

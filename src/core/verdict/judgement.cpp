@@ -76,8 +76,6 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
   result.embedding = std::move(mesh.embedding.report);
   // A grid makes steps.
   result.is_noisy = mesh.optimization.is_noisy && !areOnGrid(points);
-  const bool is_poor = mesh.optimization.is_noisy || result.intersecting_triangles > 0;
-  result.diagnosis.fills_volume = is_poor && fillVolume(points);
   return result;
 }
 
