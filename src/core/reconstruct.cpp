@@ -219,17 +219,19 @@ Surface meshConsolidated(Selection& all, std::size_t part, const Options& option
   return surface;
 }
 
-bool isNoisy(Selection& selection, std::size_t part, StageClock& clock) {
-  const Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
+/// Whether a part is a surface with noise that a mesh through its points does not bear.
+bool isNoisySurface(Selection& selection, std::size_t part, StageClock& clock) {
+  const Neighborhoods& cloud = selection.neighborhoodsOf(part);
   clock.begin("consolidation");
-  return isNoisy(neighborhoods.points(), neighborhoods.neighbors(), neighborhoods.stars());
+  return isNoisy(cloud.points(), cloud.neighbors(), cloud.stars()) &&
+         spreadOf(cloud.points()) == PointSpread::Surface;
 }
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options, StageClock& clock,
                  LeftOut& left_out) {
-  const bool is_consolidated =
-      options.consolidation == ConsolidationMode::Auto ||
-      (options.consolidation == ConsolidationMode::AsTopology && isNoisy(selection, part, clock));
+  const bool is_consolidated = options.consolidation == ConsolidationMode::Auto ||
+                               (options.consolidation == ConsolidationMode::AsTopology &&
+                                isNoisySurface(selection, part, clock));
   auto* const mesh = is_consolidated ? meshConsolidated : meshAsIs;
   Surface surface = mesh(selection, part, options, clock);
   if (!isAsPromised(surface))

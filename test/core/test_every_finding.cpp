@@ -155,13 +155,13 @@ TEST(EveryFinding, ABaseThatIsClosedOnRequestIsSound) {
 }
 
 TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
-  const auto texts_of = [](const std::string& name) {
+  const auto texts_of = [](const std::string& name, const Options& options = {}) {
     std::string texts;
-    for (const Finding& finding : reconstruct(clouds().at(name)).findings)
+    for (const Finding& finding : reconstruct(clouds().at(name), options).findings)
       texts += finding.text + "; ";
     return texts;
   };
-  EXPECT_NE(texts_of("noisy").find("the points are noisy"), std::string::npos);
+  EXPECT_NE(texts_of("noisy", given("consolidation", "none")).find("the points are noisy"), std::string::npos);
   EXPECT_NE(texts_of("volume").find("the points fill a volume"), std::string::npos);
   EXPECT_NE(texts_of("membrane").find("several layers of voxels"), std::string::npos);
   EXPECT_NE(texts_of("segments").find("the points lie along curves"), std::string::npos);

@@ -172,7 +172,7 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
 TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
   const Positions points = noisySphere(1500, 0.5);
   for (const int smoothing : {0, 5}) {
-    const Options options = given("smoothing", smoothing);
+    const Options options = given("smoothing", smoothing, "consolidation", "none");
     const Surface result = surfaceOf(points, quick(options));
     EXPECT_TRUE(isSphereOverAll(result.triangles, 1500));
     EXPECT_TRUE(result.is_out_of_time);

@@ -366,6 +366,7 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
     setter.set(reconstruction);
     EXPECT_TRUE(setter.is_returned(reconstruction)) << setter.option;
     Options expected;
+    expected.consolidation = spherical_param::ConsolidationMode::None;
     spherical_param::setOption(expected, setter.option, setter.value);
     for (const spherical_param::OptionRow& row : spherical_param::optionTable())
       EXPECT_EQ(row.get(reconstruction.getOptions()), row.get(expected))

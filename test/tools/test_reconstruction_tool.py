@@ -184,7 +184,7 @@ class ReconstructionTool(ToolTest):
         self.assertEqual(len(Mesh("out.ply").points), 1500 - consolidation["merged"])
         self.assertAlmostEqual(consolidation["noise"], 0.01, delta=0.005)
         self.assertTrue(done.stdout.startswith("read      noisy.ply, 1,500 points\n"))
-        self.assertIn("\nmoved     by 0.0", done.stdout)
+        self.assertIn(f"; consolidated: {consolidation['merged']} points merged, 95 % within 0.0", done.stdout)
         self.assertEqual(done.stderr, "")
 
     def test_options_reach_the_library_and_those_without_effect_are_null(self):

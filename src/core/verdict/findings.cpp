@@ -28,22 +28,15 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
   return grouped(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
-std::string decimal(double number) {
+std::string decimal(double number, int digits) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", number);
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
   return text.data();
 }
 
 std::string percent(double fraction) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2g %%", 100.0 * fraction);
-  return text.data();
-}
-
-/// A length with three digits.
-std::string length(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
   return text.data();
 }
 
@@ -191,7 +184,7 @@ void addOfEmbedding(const Options& options, const Surface& result, std::vector<F
 std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
-  const bool is_consolidated = given.consolidation != ConsolidationMode::None;
+  const bool is_consolidated = given.consolidation == ConsolidationMode::Auto;
   const std::size_t outliers = result.outliers.size();
   if (outliers > 0)
     findings.push_back(
@@ -207,7 +200,7 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     if (diagnosis.coarse_steps[axis] > 0.0)
       findings.push_back({std::string(1, "xyz"[axis]) + " has steps of " +
-                          decimal(diagnosis.coarse_steps[axis]) +
+                          decimal(diagnosis.coarse_steps[axis], 6) +
                           ": the file lost digits; subtract an offset before writing single "
                           "precision"});
   if (diagnosis.is_scattered)
@@ -366,7 +359,7 @@ void summarize(std::size_t parts_in_all, Result& result) {
   if (distance > 0.0)
     result.verdict.replace(result.verdict.size() - 1, 1,
                            "; consolidated: " + counted(merged, "point") + " merged, 95 % within " +
-                               length(distance) + " of the mesh.");
+                               decimal(distance, 3) + " of the mesh.");
   LeftOut stray = result.left_out;
   stray.not_finite.clear();
   if (const std::string text = stray.text(); !text.empty())

@@ -21,8 +21,7 @@ double shortestDistance(const Positions& points) {
   return shortest;
 }
 
-/// Points that came together are numbered by the first of them, all are in use, and the report is
-/// that of the places.
+/// Points that came together are numbered by the first of them, and all are in use.
 void expectConsistent(const Positions& input, const Consolidation& result) {
   ASSERT_EQ(result.point_of_input.size(), columnCount(input));
   Index next = 0;
@@ -31,12 +30,11 @@ void expectConsistent(const Positions& input, const Consolidation& result) {
     next = std::max(next, point + 1);
   }
   ASSERT_EQ(next, result.points.cols());
+}
+
+Eigen::ArrayXd displacementsOf(const Positions& input, const Consolidation& result) {
   const Positions steps = result.points(Eigen::all, result.point_of_input) - input;
-  const Eigen::ArrayXd moved = steps.colwise().norm().transpose().array();
-  const double rounding = 1e-12 * moved.maxCoeff();
-  EXPECT_NEAR(result.report.max_displacement, moved.maxCoeff(), rounding);
-  EXPECT_NEAR(result.report.mean_displacement, moved.mean(), rounding);
-  EXPECT_NEAR(result.report.rms_displacement, std::sqrt(moved.square().mean()), rounding);
+  return steps.colwise().norm().transpose().array();
 }
 
 TEST(Consolidation, NoiseIsTakenOffAndMeasuredAndLayersBecomeOne) {
@@ -75,7 +73,7 @@ TEST(Consolidation, ThinLimbsAreNoThickNoise) {
   const Consolidation result = consolidate(tube);
   expectConsistent(tube, result);
   EXPECT_LT(result.report.merged, n / 10);
-  EXPECT_LT(result.report.mean_displacement, 0.05);
+  EXPECT_LT(displacementsOf(tube, result).mean(), 0.05);
 }
 
 TEST(Consolidation, HardlyTouchesCleanPoints) {
@@ -83,7 +81,7 @@ TEST(Consolidation, HardlyTouchesCleanPoints) {
   const Consolidation result = consolidate(points);
   expectConsistent(points, result);
   EXPECT_EQ(result.report.merged, 0U);
-  EXPECT_LT(result.report.max_displacement, 0.02 * shortestDistance(points));
+  EXPECT_LT(displacementsOf(points, result).maxCoeff(), 0.02 * shortestDistance(points));
   EXPECT_LT(result.report.noise, 0.02 * shortestDistance(points));
 }
 
@@ -95,7 +93,7 @@ TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
   EXPECT_EQ(result.point_of_input[10], 0);
   EXPECT_EQ(result.point_of_input[11], 1);
   EXPECT_EQ(result.report.merged, 0U);
-  EXPECT_EQ(result.report.max_displacement, 0.0);
+  EXPECT_EQ(displacementsOf(few, result).maxCoeff(), 0.0);
 
   const Eigen::Vector3d lone(2.0, 0.0, 0.0);
   const Positions with_lone = horizontally(withNoise(spiralSphere(2000), 0.01, 7), lone);
@@ -127,6 +125,59 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
         return {};
       });
   EXPECT_EQ(with_search.triangles, mesh.triangles);
+}
+
+TEST(Consolidation, TheSurfaceKeepsTheResolutionThatTheNoiseAllows) {
+  // Noise of one and a half spacings.
+  const Positions points = withNoise(randomSphere(12000, 3), 0.045, 4);
+  const Consolidation result = consolidate(points);
+  expectConsistent(points, result);
+  EXPECT_GT(result.points.cols(), 1000);
+  EXPECT_LT(roughnessOf(result.points), 0.01);
+}
+
+TEST(Consolidation, NoisyPartsOfAScanAreConsolidatedByDefault) {
+  const Positions noisy = withNoise(randomSphere(4000, 3), 0.04, 4);
+  const Result result = reconstruct(noisy, Options());
+  ASSERT_TRUE(result.surface().consolidation);
+  const ConsolidationReport& report = *result.surface().consolidation;
+  EXPECT_GT(report.distance_95, 0.05);
+  EXPECT_LT(report.distance_95, 0.12);
+  EXPECT_NE(result.verdict.find("; consolidated: "), std::string::npos) << result.verdict;
+  EXPECT_TRUE(result.left_out.text().empty());
+  EXPECT_TRUE(result.surface().topology.isSphere());
+  EXPECT_FALSE(surfaceOf(noisy, given("consolidation", "none")).consolidation);
+  const Surface through_all = surfaceOf(noisy, sphere());
+  EXPECT_FALSE(through_all.consolidation);
+  EXPECT_EQ(through_all.vertexCount(), 4000U);
+}
+
+TEST(Consolidation, CleanPointsAndTwoSheetsAreNotNoisy) {
+  const double spacing = std::sqrt(4.0 * kPi / 3000.0);
+  EXPECT_FALSE(surfaceOf(spiralSphere(3000), Options()).consolidation);
+  EXPECT_FALSE(surfaceOf(withNoise(spiralSphere(3000), 0.1 * spacing, 5), Options()).consolidation);
+  EXPECT_TRUE(surfaceOf(withNoise(spiralSphere(3000), 0.5 * spacing, 5), Options()).consolidation);
+  const Positions nested =
+      horizontally(spiralSphere(3000), (1.0 - 1.6 * spacing) * spiralSphere(2600));
+  for (const Surface& surface : reconstruct(nested, Options()).surfaces)
+    EXPECT_FALSE(surface.consolidation);
+}
+
+TEST(Consolidation, DistancesAreThoseFromTheTrianglesAroundTheVertex) {
+  Positions vertices(3, 3);
+  vertices << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+  Triangles triangle(3, 1);
+  triangle << 0, 1, 2;
+  Positions points(3, 4);
+  // Above it, beside a corner, beyond the longest side, and one that does not count.
+  points << 0.2, -3.0, 1.0, 9.0, 0.2, -4.0, 1.0, 9.0, 2.0, 0.0, 0.0, 9.0;
+  const std::vector<Index> vertex{0, 0, 1, -1};
+  const auto within = [&](double fraction) {
+    return internal::distanceWithin(fraction, points, vertex, vertices, triangle, 1);
+  };
+  EXPECT_NEAR(within(0.0), std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(within(0.5), 2.0, 1e-12);
+  EXPECT_NEAR(within(1.0), 5.0, 1e-12);
 }
 
 TEST(Consolidation, AnyPointsHaveAClosedMesh) {

@@ -57,11 +57,11 @@ TEST(MeshCleaning, AClosedMeshStaysClosedWithAllPoints) {
 
 TEST(MeshCleaning, WhatCannotBeTakenApartIsAHoleOnRequestAlone) {
   const Positions points = noisyLens(1500, 0.1, 8);
-  const Surface kept = surfaceOf(points);
+  const Surface kept = surfaceOf(points, given("consolidation", "none"));
   EXPECT_TRUE(isSphereOverAll(kept.triangles, 1500));
   EXPECT_TRUE(kept.isUsable());
   EXPECT_EQ(kept.left_out_triangles, 0U);
-  const Surface removed = surfaceOf(points, given("intersections", "remove"));
+  const Surface removed = surfaceOf(points, given("intersections", "remove", "consolidation", "none"));
   EXPECT_EQ(removed.intersecting_triangles, 0U);
   EXPECT_EQ(removed.isClosed(), kept.intersecting_triangles == 0);
 }

@@ -119,7 +119,7 @@ TEST(Attempts, AFalseHandleOfNoiseIsNotTakenWhereASphereIsSound) {
       meshFaces(points, graph, RotationSystem(points, graph, nodeSpacings(graph, 1), 1));
   ASSERT_TRUE(faces);
   ASSERT_EQ(faces->genus(), 1U);
-  const Result result = reconstruct(points);
+  const Result result = reconstruct(points, given("consolidation", "none"));
   EXPECT_TRUE(hasStage(result, "embedding"));
   expectSound(result.surface(), 0, 0);
   EXPECT_EQ(result.surface().diagnosis.cut_handles, 0U);
