@@ -128,7 +128,7 @@ def smoothing():
     cloud = scan("animal", 12000, "-noise", 1.5)
     views = [(f"smooth_{steps}.ply", f"-smoothing {steps}: {mesh(cloud, f'smooth_{steps}', '-smoothing', steps)}")
              for steps in (1, 5, 30)]  # fmt: skip
-    said = mesh(cloud, "smooth_0")
+    said = mesh(cloud, "smooth_0", "-consolidation", "none")
     draw(PICTURES / "smoothing.png", "1320x340", [("smooth_0.ply", f"as scanned: {said}"), *views], SIDE)
 
 
@@ -141,15 +141,15 @@ def consolidation():
         scans.append(points + [random.gauss(0, 0.003 * np.ptp(points[:, 0])) for _ in range(3)])
     np.savetxt("scans.xyz", np.concatenate(scans), fmt="%.6g")
     views = []
-    for name, options in (("plain", []), ("smoothed", ["-smoothing", "5"]), ("auto", ["-consolidation", "auto"])):
+    for name, options in (("plain", ["-consolidation", "none"]), ("smoothed", ["-smoothing", "5"]), ("auto", ["-consolidation", "auto"])):
         said = mesh("scans.xyz", name, *options)
-        views.append((f"{name}.ply", f"{' '.join(options) or 'four scans, merged'}: {said}"))
+        views.append((f"{name}.ply", f"{' '.join(options)}: {said}"))
     draw(PICTURES / "consolidation.png", "1260x420", views, "--view=25,5")
 
 
 def symptoms():
     for name, cloud, options, view in (
-        ("noise", scan("animal", 12000, "-noise", 0.6), ["-consolidation", "auto"], SIDE),
+        ("noise", scan("animal", 12000, "-noise", 0.6), ["-consolidation", "none"], SIDE),
         ("handle", scan("torus", 4000), ["-handles", "none"], "--view=30,40"),
     ):
         mesh(cloud, "before")

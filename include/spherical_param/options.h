@@ -52,7 +52,7 @@ enum class ViewMode {
 
 /// Whether points are consolidated before meshing.
 enum class ConsolidationMode {
-  AsTopology,  ///< for TopologyMode::Scan as Auto those parts that are noisy, else None
+  AsTopology,  ///< for TopologyMode::Scan without smoothing, Auto of noisy parts; else None
   None,        ///< the mesh goes through the given points
   Auto,        ///< points are moved to the sampled surface and merged within their noise
 };

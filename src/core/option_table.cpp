@@ -407,7 +407,7 @@ Options withTopology(Options options) {
   if (!is_scan && (options.view == ViewMode::Auto || options.method == Method::Paper))
     options.view = ViewMode::None;
   // Of a scan, noise decides.
-  if (!is_scan && options.consolidation == ConsolidationMode::AsTopology)
+  if ((!is_scan || options.smoothing > 0) && options.consolidation == ConsolidationMode::AsTopology)
     options.consolidation = ConsolidationMode::None;
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);

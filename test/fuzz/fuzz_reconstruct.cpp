@@ -119,7 +119,7 @@ private:
 };
 
 void checkSurface(const Positions& points, const Options& options, const Surface& result) {
-  if (options.consolidation == ConsolidationMode::None) {
+  if (!result.consolidation) {
     const std::string fault = stress::faultOf(points, options, result);
     if (!fault.empty())
       fuzz::finding(fault);

@@ -19,7 +19,7 @@ import shapes
 import spherical_param as sp
 
 STAGES = ["view", "neighbors", "graph", "outliers", "parts"]
-STAGES += ["openings", "embedding", "triangulation", "optimization", "cleaning", "quality"]
+STAGES += ["consolidation", "openings", "embedding", "triangulation", "optimization", "cleaning", "quality"]
 
 INTERRUPTED = """
 import signal, traceback

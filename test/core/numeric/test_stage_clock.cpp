@@ -74,7 +74,7 @@ TEST(StageClock, StagesComeInOrder) {
                       "embedding", "fill",         "quality"};
   Names expected{"neighbors", "graph", "outliers", "neighbors", "graph", "parts"};
   for (int part = 0; part < 2; ++part) {
-    expected.insert(expected.end(), {"neighbors", "graph", "consolidation", "graph"});
+    expected.insert(expected.end(), {"neighbors", "graph"});
     expected.insert(expected.end(), of_part.begin(), of_part.end());
   }
   Options options = given("outliers", "auto", "parts", "each", "smoothing", 1, "fill", "smooth");
@@ -87,7 +87,7 @@ TEST(StageClock, StagesComeInOrder) {
   };
   const Result result = reconstruct(points, options);
   EXPECT_EQ(names, expected);
-  Names timed{"neighbors", "graph", "outliers", "parts", "consolidation"};
+  Names timed{"neighbors", "graph", "outliers", "parts"};
   timed.insert(timed.end(), of_part.begin(), of_part.end());
   ASSERT_EQ(result.stages.size(), timed.size());
   for (std::size_t i = 0; i < timed.size(); ++i) {
