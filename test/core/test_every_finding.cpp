@@ -161,7 +161,8 @@ TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
       texts += finding.text + "; ";
     return texts;
   };
-  EXPECT_NE(texts_of("noisy", given("consolidation", "none")).find("the points are noisy"), std::string::npos);
+  EXPECT_NE(texts_of("noisy", given("consolidation", "none")).find("the points are noisy"),
+            std::string::npos);
   EXPECT_NE(texts_of("volume").find("the points fill a volume"), std::string::npos);
   EXPECT_NE(texts_of("membrane").find("several layers of voxels"), std::string::npos);
   EXPECT_NE(texts_of("segments").find("the points lie along curves"), std::string::npos);

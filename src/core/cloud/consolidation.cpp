@@ -242,6 +242,8 @@ private:
   void findProbes() {
     // Of the points, in the largest neighbourhood.
     constexpr Index min_parts = 20;
+    // Searches for more take too long.
+    constexpr Index max_size = 640;
     constexpr Index first_step = 4;
     const auto n = static_cast<Index>(points_.cols());
     Indexed<Probe> open;
@@ -272,7 +274,7 @@ private:
           probe.roundness = median;
           probe.flat = size;
         }
-        if (median <= kMaxRoundness || 2 * min_parts * size >= n)
+        if (median <= kMaxRoundness || 2 * min_parts * size >= n || size == max_size)
           probes_.push_back(probe);
         else if (rank_[probe.point] % step == 0)
           rest.push_back(probe);

@@ -61,7 +61,8 @@ TEST(MeshCleaning, WhatCannotBeTakenApartIsAHoleOnRequestAlone) {
   EXPECT_TRUE(isSphereOverAll(kept.triangles, 1500));
   EXPECT_TRUE(kept.isUsable());
   EXPECT_EQ(kept.left_out_triangles, 0U);
-  const Surface removed = surfaceOf(points, given("intersections", "remove", "consolidation", "none"));
+  const Surface removed =
+      surfaceOf(points, given("intersections", "remove", "consolidation", "none"));
   EXPECT_EQ(removed.intersecting_triangles, 0U);
   EXPECT_EQ(removed.isClosed(), kept.intersecting_triangles == 0);
 }

@@ -41,7 +41,8 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
   // given ones unless they are smoothed after it.
   const Positions points = withNoise(hemisphere(1500), 0.5 * std::sqrt(2.0 * kPi / 1500), 3);
   for (const int smoothing : {0, 3}) {
-    const Surface result = surfaceOf(points, given(leftOpen(), "smoothing", smoothing, "consolidation", "none"));
+    const Surface result =
+        surfaceOf(points, given(leftOpen(), "smoothing", smoothing, "consolidation", "none"));
     EXPECT_FALSE(result.isClosed());
     EXPECT_TRUE(result.is_noisy);
     EXPECT_EQ(result.smoothing.has_value(), smoothing > 0);

@@ -77,7 +77,8 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
 }
 
 TEST(Judgement, MarksAreThoseOfTheFindings) {
-  const Surface tangled = mesh(noisySphere(300, 1.0), watched(quick(given("consolidation", "none"))));
+  const Surface tangled =
+      mesh(noisySphere(300, 1.0), watched(quick(given("consolidation", "none"))));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
