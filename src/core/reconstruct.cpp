@@ -134,10 +134,16 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
   return surface;
 }
 
+/// \see coarseSteps; none of an elevation grid.
+Eigen::Vector3d coarseStepsOffGrid(const Positions& points, double min_spacings) {
+  const Eigen::Vector3d steps = coarseSteps(points, min_spacings);
+  return steps.isZero(0.0) || isElevationGrid(points) ? Eigen::Vector3d(0.0, 0.0, 0.0) : steps;
+}
+
 /// Whether coordinates have steps so coarse that they leave rows of points, not a surface.
 bool areRows(const Positions& points) {
   constexpr double min_spacings = 1.0;
-  return !isElevationGrid(points) && !coarseSteps(points, min_spacings).isZero(0.0);
+  return !coarseStepsOffGrid(points, min_spacings).isZero(0.0);
 }
 
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
@@ -367,9 +373,8 @@ Result reconstruct(const Positions& points, const Options& given,
   });
   result.stages = clock.take();
   for (Surface& surface : result.surfaces) {
-    const Positions sampled = points(Eigen::all, surface.inputs);
-    if (!internal::isElevationGrid(sampled))
-      surface.diagnosis.coarse_steps = internal::coarseSteps(sampled, coarse_step);
+    surface.diagnosis.coarse_steps =
+        internal::coarseStepsOffGrid(points(Eigen::all, surface.inputs), coarse_step);
     surface.findings = internal::findingsOf(given, surface);
     surface.verdict = internal::verdictOf(options, surface);
   }

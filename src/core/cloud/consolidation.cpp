@@ -84,6 +84,14 @@ private:
   QuadricFit quadric_;
 };
 
+/// The indices by ascending values; ties by index.
+std::vector<Index> orderOf(const Indexed<double>& values) {
+  std::vector<Index> order = firstIndices(values.size());
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::pair(values[a], a) < std::pair(values[b], b); });
+  return order;
+}
+
 /// Points that were moved to the surface.
 struct MovedPoints {
   std::vector<Index> from;  ///< their numbers before, ascending
@@ -96,12 +104,12 @@ struct MovedPoints {
 /// probes, of which there are fewer where neighbourhoods are large.
 class NoisyCloud {
 public:
+  /// \param quiet  execution of searches, which report nothing.
   /// \param report receives fractions of the work.
-  NoisyCloud(const Positions& points, int threads, FractionReport report)
-      : points_(points), report_(std::move(report)) {
-    execution_.threads = threads;
-    search_ = makeNeighborSearch(points, execution_);
-    threads_ = threadCount(threads, columnCount(points));
+  NoisyCloud(const Positions& points, const Execution& quiet, FractionReport report)
+      : points_(points), report_(std::move(report)), execution_(quiet),
+        search_(makeNeighborSearch(points, quiet)),
+        threads_(threadCount(quiet.threads, columnCount(points))) {
     rankPoints();
     findProbes();
     chooseSizes();
@@ -227,13 +235,9 @@ private:
       for (const Index j : listOf(lists, i))
         distances[i] += (points_.col(j) - points_.col(i)).norm();
     });
-    std::vector<Index> order = firstIndices(lists.size());
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return std::pair(distances[a], a) < std::pair(distances[b], b);
-    });
-    rank_.resize(order.size());
+    rank_.resize(lists.size());
     Index rank = 0;
-    for (const Index i : order)
+    for (const Index i : orderOf(distances))
       rank_[i] = rank++;
   }
 
@@ -345,9 +349,9 @@ private:
 
   const Positions& points_;
   FractionReport report_;
-  Execution execution_;  ///< of searches, which report nothing
+  const Execution& execution_;
   NeighborSearch search_;
-  int threads_ = 1;
+  int threads_;
   Indexed<Index> rank_;    ///< of each point in an order by its neighbours
   Indexed<Probe> probes_;  ///< in the order of the points
 };
@@ -372,11 +376,7 @@ std::vector<Index> thinned(const Positions& points, const Indexed<double>& dista
   const NeighborLists lists = findNearestNeighbors(points, max_merged, execution);
   Indexed<char> is_merged(lists.size(), 0);
   std::vector<Index> left;
-  std::vector<Index> order = firstIndices(lists.size());
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::pair(distances[a], a) < std::pair(distances[b], b);
-  });
-  for (const Index i : order) {
+  for (const Index i : orderOf(distances)) {
     if (is_merged[i] != 0)
       continue;
     left.push_back(i);
@@ -396,11 +396,9 @@ ConsolidatedNodes consolidated(const Positions& nodes, const Execution& executio
   };
   Execution quiet;
   quiet.threads = execution.threads;
-  const MovedPoints coarse =
-      NoisyCloud(nodes, execution.threads, report_from(0.0, 0.7)).onSurface();
+  const MovedPoints coarse = NoisyCloud(nodes, quiet, report_from(0.0, 0.7)).onSurface();
   // What is left of the noise is taken off again. Without, normals of the jug are 20 % worse.
-  const MovedPoints fine =
-      NoisyCloud(coarse.points, execution.threads, report_from(0.7, 0.3)).onSurface();
+  const MovedPoints fine = NoisyCloud(coarse.points, quiet, report_from(0.7, 0.3)).onSurface();
   Indexed<double> distances;
   for (const Index c : fine.from)
     distances.push_back(coarse.distances[c]);
@@ -517,14 +515,7 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
   if (!(noise > min_noise * spacing && noise * spacing > min_relative_noise * distance * distance &&
         medianOf(errors[1]) < max_growth * noise))
     return false;
-  std::size_t edges = 0;
-  std::size_t agreed = 0;
-  for (const Index i : indicesOf(stars.of_node))
-    for (const Index j : stars.of(i)) {
-      ++edges;
-      agreed += stars.of(j).contains(i) ? 1 : 0;
-    }
-  return static_cast<double>(edges - agreed) > min_disagreement * static_cast<double>(edges);
+  return oneSidedFraction(stars) > min_disagreement;
 }
 
 double distanceWithin(double fraction, const Positions& points,

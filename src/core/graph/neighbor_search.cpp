@@ -58,8 +58,7 @@ private:
   /// The `count` nearest points, the nearest first.
   void findNearest(const double* place, std::size_t count, Nearest& nearest) const {
     flann::KNNSimpleResultSet<double> found(count);
-    index_.findNeighbors(found, const_cast<double*>(place),
-                         flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    index_.findNeighbors(found, place, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     nearest.points.resize(count);
     nearest.distances.resize(count);
     found.copy(nearest.points.data(), nearest.distances.data(), count, true);

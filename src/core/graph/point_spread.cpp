@@ -244,14 +244,7 @@ bool areScattered(const Positions& points, const Stars& stars) {
   std::vector<double> flatness;
   for (const std::vector<NearPoint>& near : nearestOfSome(points, neighbors))
     flatness.push_back(Axes(near, neighbors).flatness());
-  double all = 0.0;
-  double one_sided = 0.0;
-  for (const Index i : indicesOf(stars))
-    for (const Index j : stars.of(i)) {
-      all += 1.0;
-      one_sided += stars.of(j).contains(i) ? 0.0 : 1.0;
-    }
-  return medianOf(flatness) * one_sided > min_disorder * all;
+  return medianOf(flatness) * oneSidedFraction(stars) > min_disorder;
 }
 
 bool areOnLines(const Positions& points, const Graph& graph) {

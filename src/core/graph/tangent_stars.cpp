@@ -483,4 +483,15 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Execu
   return stars;
 }
 
+double oneSidedFraction(const Stars& stars) {
+  std::size_t all = 0;
+  std::size_t one_sided = 0;
+  for (const Index i : indicesOf(stars))
+    for (const Index j : stars.of(i)) {
+      ++all;
+      one_sided += stars.of(j).contains(i) ? 0 : 1;
+    }
+  return all > 0 ? static_cast<double>(one_sided) / static_cast<double>(all) : 0.0;
+}
+
 }  // namespace spherical_param::internal

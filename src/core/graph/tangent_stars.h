@@ -47,4 +47,7 @@ struct Stars {
 /// Cost: O(n c log c) for lists of c points.
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution);
 
+/// The fraction of the stars' entries that the other star does not have; 0 without any.
+double oneSidedFraction(const Stars& stars);
+
 }  // namespace spherical_param::internal
