@@ -115,11 +115,14 @@ public:
   const Eigen::Vector3d& getViewpoint() const { return options_.viewpoint; }
 
   /** \brief Set whether points are moved to the sampled surface and merged within their noise
-   * before meshing: for noisy and for merged scans. \param[in] mode AsTopology: those of noisy
-   * parts of a scan; Auto: all. Default: None, since polygons index the input cloud. \note Polygons
-   * then index the first of merged points; a pcl::PolygonMesh has it where it was moved,
-   * Surface::consolidation of getResult() the figures. The search object is used for setOutliers()
-   * and setParts() alone. */
+   * before meshing: for noisy and for merged scans.
+   *
+   * \param[in] mode AsTopology: those of noisy parts of a scan; Auto: all. Default: None, since
+   * polygons index the input cloud.
+   *
+   * \note Polygons then index the first of merged points; a pcl::PolygonMesh has it where it was
+   * moved, Surface::consolidation of getResult() the figures. The search object is used for
+   * setOutliers() and setParts() alone. */
   void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get the value of setConsolidation(). \return it */
   ConsolidationMode getConsolidation() const { return options_.consolidation; }
