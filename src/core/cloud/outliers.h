@@ -1,8 +1,10 @@
 #pragma once
 
 #include "graph.h"
+#include "neighbor_search.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
+#include "tangent_stars.h"
 
 #include <vector>
 
@@ -17,11 +19,14 @@ namespace spherical_param::internal {
 /// OutlierMode::Deviation: points too far from the average of their neighbours (Zwicker and Gotsman
 /// 2004, section 4.2), \see deviatingPoints, and stray points beyond the same threshold.
 ///
-/// \param points 3 x n, the nodes.
-/// \param stray  the stray points.
+/// \param points    3 x n, the nodes.
+/// \param neighbors of the nodes, with their search.
+/// \param stars     of the nodes.
+/// \param stray     the stray points.
 /// \return n entries, not 0 for an outlier; the same for any number of threads.
-/// Cost: that of a search and a fit for each point.
+/// Cost: O(n), and that of a search and a fit for each point that is not in the plane of its star.
 Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
+                           const Neighbors& neighbors, const Stars& stars,
                            const std::vector<StrayPoint>& stray, const Execution& execution);
 
 /// Points that are off the surface of their neighbours.

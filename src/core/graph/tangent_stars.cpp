@@ -112,10 +112,10 @@ private:
   double squared_radius_ = 0.0;
 };
 
-/// Axes of the `count` nearest candidates about their centroid, by ascending variance. False if
-/// they span no plane that can be trusted.
-bool findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t count,
-                      Eigen::Matrix3d& axes, bool& is_line) {
+/// Axes of the `count` nearest candidates about their centroid, by ascending variance, and the
+/// height of the origin. Sets whether they span a plane that can be trusted.
+void findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t count,
+                      Eigen::Matrix3d& axes, bool& is_line, Star& star) {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < count; ++c)
     centroid += candidates[c].offset;
@@ -137,7 +137,9 @@ bool findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t coun
   // a sphere scanned in lines has 27 self-intersections instead of 3.
   constexpr double min_width_ratio = 0.01;
   is_line = !(variances[1] > min_width_ratio * variances[2]);
-  return !is_line && variances[0] <= max_plane_roundness * variances[1];
+  star.tangent_plane = !is_line && variances[0] <= max_plane_roundness * variances[1];
+  star.height = static_cast<float>(std::abs(axes.col(0).dot(centroid)) /
+                                   std::sqrt(variances[1] / static_cast<double>(count)));
 }
 
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
@@ -199,7 +201,7 @@ void findStar(const std::vector<NearPoint>& candidates, std::size_t others, Voro
   const std::size_t all = candidates.size() < kTangentNeighbors ? 0 : candidates.size();
   for (std::size_t span = 0; is_line && span < all;) {
     span = std::min(std::max(2 * span, std::size_t{kTangentNeighbors}), all);
-    star.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
+    findTangentPlane(candidates, span, axes, is_line, star);
   }
   bool certified = !is_line;
   if (star.tangent_plane)

@@ -14,6 +14,9 @@ struct Star {
   Index candidates = -1;       ///< number of known nearest points; -1: not processed
   bool tangent_plane = false;  ///< the tangent plane is reliable
   bool wants_more = false;     ///< more candidates may help: the star is not certified
+  /// Of the point over its tangent plane [standard deviation of the nearest points in the plane, in
+  /// the direction in which it is smaller].
+  float height = 0.0F;
 };
 
 /// The star of each node: its Voronoi neighbours in its tangent plane, or its neighbours in the
