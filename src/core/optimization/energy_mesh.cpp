@@ -16,7 +16,7 @@ namespace tuned = optimization_constants;
 EnergyMesh::EnergyMesh(const Positions& points, SphereMesh mesh, const Graph& graph, int threads,
                        const OpenPlaces* openings, const FractionReport& report)
     : points_(&points), graph_(graph), threads_(threadCount(threads, mesh.slotCount())),
-      mesh_(std::move(mesh)), facets_(mesh_.slotCount()) {
+      mesh_(std::move(mesh)), facets_(mesh_.slotCount()), is_touched_(mesh_.slotCount()) {
   const double lengths = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph.lengths.size());
@@ -55,6 +55,7 @@ void EnergyMesh::reset(SphereMesh mesh) {
 }
 
 void EnergyMesh::save(Index t) {
+  is_touched_[t] = 1;
   if (!open_.empty())
     old_facets_.emplace_back(t, facets_[t]);
 }
@@ -190,6 +191,14 @@ std::vector<Index> EnergyMesh::changed() const {
   return changed;
 }
 
+std::vector<Index> EnergyMesh::takeTouched() {
+  std::vector<Index> touched;
+  for (const Index t : indicesOf(is_touched_))
+    if (std::exchange(is_touched_[t], 0) != 0)
+      touched.push_back(t);
+  return touched;
+}
+
 void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbors) {
   of.mesh().forEachAround(
       v, [&](Index t, int corner) { neighbors.push_back(of.mesh().vertex(t, (corner + 1) % 3)); });
@@ -211,6 +220,26 @@ IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
       return true;
     };
   return findPairsUpTo(most, mesh.points(), mesh.mesh().triangles(), surface, execution);
+}
+
+void updateIntersections(const EnergyMesh& mesh, const std::vector<Index>& touched,
+                         IntersectingPairs& found) {
+  auto& pairs = found.pairs;
+  const auto erase_if = [&](const auto& is) {
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is), pairs.end());
+  };
+  erase_if([&](const auto& pair) {
+    return std::any_of(pair.begin(), pair.end(), [&](Index t) {
+      return std::binary_search(touched.begin(), touched.end(), t);
+    });
+  });
+  const auto more = findSelfIntersectionsOf(mesh.points(), mesh.mesh().triangles(), touched,
+                                            {mesh.threads()});
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  erase_if([&](const auto& pair) {
+    return mesh.facet(pair[0]).is_open || mesh.facet(pair[1]).is_open;
+  });
+  std::sort(pairs.begin(), pairs.end());
 }
 
 bool isGain(double change) {

@@ -70,6 +70,8 @@ public:
   double change() const { return (change_ - open_.back().change) / unit_; }
   /// Triangles that have changed since begin(), ascending.
   std::vector<Index> changed() const;
+  /// Triangles that may have changed since the last call, ascending; all at first.
+  std::vector<Index> takeTouched();
 
 private:
   double edge(Index v, Index w, const Facet& f, const Facet& g) const {
@@ -94,6 +96,7 @@ private:
   double unit_ = 1.0;
   double change_ = 0.0;  ///< of the energy since the first begin()
   Indexed<Facet> facets_;
+  Indexed<char> is_touched_;  ///< since takeTouched()
   FlipRule may_flip_;
   std::vector<Before> open_;
   std::vector<std::pair<Index, Facet>> old_facets_;
@@ -106,6 +109,13 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
 /// if more than `most` triangles intersect. Open triangles do not count.
 IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
                                     const FractionReport& report);
+
+/// Finds the pairs of triangles that intersect among which some may be new.
+///
+/// \param touched the triangles that may have changed, ascending.
+/// \param found   all pairs before; receives those of now.
+void updateIntersections(const EnergyMesh& mesh, const std::vector<Index>& touched,
+                         IntersectingPairs& found);
 
 /// Whether a change of the energy is a gain beyond rounding [EnergyMesh::unit()].
 bool isGain(double change);

@@ -1,6 +1,7 @@
 #include "workbench.h"
 
 #include "optimization_constants.h"
+#include "spherical_param/self_intersection.h"
 
 #include <algorithm>
 #include <utility>
@@ -31,7 +32,17 @@ IntersectingPairs Workbench::findIntersections() {
   const std::size_t most = isOutOfTime()
                                ? mostOfUsable(static_cast<std::size_t>(mesh.mesh().size()))
                                : max_work_ / optimization_constants::kMinUntangled;
-  return internal::findIntersections(mesh, most, report);
+  // With more of them, a search among all triangles is faster.
+  constexpr std::size_t min_untouched = 8;
+  const std::vector<Index> touched = mesh.takeTouched();
+  bool is_known = !known_.is_sample && min_untouched * touched.size() < mesh.mesh().slotCount();
+  if (is_known) {
+    updateIntersections(mesh, touched, known_);
+    is_known = countTriangles(known_.pairs) <= most;
+  }
+  if (!is_known)
+    known_ = internal::findIntersections(mesh, most, report);
+  return known_;
 }
 
 bool Workbench::isOutOfTime() {
