@@ -482,7 +482,8 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
   std::vector<Index> queries;
   for (Index i = 0; i < n; i += n / samples + 1)
     queries.push_back(i);
-  if (!neighbors.search || queries.size() < samples / 2)
+  if (!neighbors.search || queries.size() < samples / 2 ||
+      !(oneSidedFraction(stars) > min_disagreement))
     return false;
   constexpr Index reach = 6 * kLeastSize;  // of the weights, around 20 neighbours
   const NeighborLists lists = neighbors.search(queries, reach);
@@ -512,10 +513,9 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
   const double spacing = medianOf(spacings);
   const double distance = medianOf(nearest);
   const double noise = medianOf(errors[0]);
-  if (!(noise > min_noise * spacing && noise * spacing > min_relative_noise * distance * distance &&
-        medianOf(errors[1]) < max_growth * noise))
-    return false;
-  return oneSidedFraction(stars) > min_disagreement;
+  return noise > min_noise * spacing &&
+         noise * spacing > min_relative_noise * distance * distance &&
+         medianOf(errors[1]) < max_growth * noise;
 }
 
 double distanceWithin(double fraction, const Positions& points,

@@ -107,13 +107,14 @@ bool fillVolume(const Positions& points, const Samples& samples, bool are_voxels
     flatness.push_back(Axes(near, patch).flatness());
     densities.push_back(1.5 * std::log(near[neighbors - 1].squared_distance));
   }
+  if (!(medianOf(flatness) > min_flatness))
+    return false;
   const double dimension = dimensionOf(points);
   const bool is_certain =
       are_voxels || (dimension > min_of_uneven && points.cols() >= min_uneven_points);
   std::sort(densities.begin(), densities.end());
   const double spread = densities[densities.size() * 9 / 10] - densities[densities.size() / 10];
-  return medianOf(flatness) > min_flatness && dimension > min_dimension &&
-         (is_certain || dimension - spread > min_evenness);
+  return dimension > min_dimension && (is_certain || dimension - spread > min_evenness);
 }
 
 /// Number of the 26 voxels around one that are points, on average; 0 if points are no voxels.
@@ -214,6 +215,11 @@ Eigen::Vector3d coarseSteps(const Positions& points, double min_spacings) {
   constexpr Index neighbor = 6;
   constexpr int digits_lost = 23;  // of a power of two to the next number of single precision
   Eigen::Vector3d steps = Eigen::Vector3d::Zero();
+  if (points.cols() <= neighbor)
+    return steps;
+  // Not even the points of a line are that near to each other.
+  const double extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();
+  const double finest = min_spacings * extent / static_cast<double>(points.cols());
   for (int axis = 0; axis < 3; ++axis) {
     const double least = points.row(axis).cwiseAbs().minCoeff();
     const double step = least > 0.0 ? std::ldexp(1.0, std::ilogb(least) - digits_lost) : 0.0;
@@ -221,11 +227,11 @@ Eigen::Vector3d coarseSteps(const Positions& points, double min_spacings) {
       return std::all_of(points.row(axis).begin(), points.row(axis).end(),
                          [&](double value) { return std::fmod(value, of) == 0.0; });
     };
-    if (step > 0.0 && are_multiples(step) && !are_multiples(2.0 * step))
+    if (step > finest && are_multiples(step) && !are_multiples(2.0 * step))
       steps[axis] = step;
   }
-  if (steps.isZero(0.0) || points.cols() <= neighbor)
-    return Eigen::Vector3d::Zero();
+  if (steps.isZero(0.0))
+    return steps;
   std::vector<double> distances;
   for (const std::vector<NearPoint>& near : nearestOfSome(points, neighbor))
     distances.push_back(std::sqrt(near.back().squared_distance));

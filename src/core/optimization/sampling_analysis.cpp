@@ -38,7 +38,8 @@ std::optional<Eigen::Matrix2d> bendingOf(const Positions& local) {
   Eigen::Matrix2d hessian;
   hessian << quadric[2], quadric[3], quadric[3], quadric[4];
   // Bending by its amount, whatever its sign.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(hessian);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
+  principal.computeDirect(hessian);
   return principal.eigenvectors() * principal.eigenvalues().cwiseAbs().asDiagonal() *
          principal.eigenvectors().transpose();
 }
@@ -55,7 +56,8 @@ Eigen::Array2d agreementAt(Index i, const Positions& points, const Graph& graph)
   if (!(scale > 0.0))
     return {0.0, 0.0};
   // The direction of the least spread comes last: it is that of the height.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(spread);
   const Eigen::Matrix3d frame = axes.eigenvectors().rowwise().reverse().transpose() / scale;
   const std::optional<Eigen::Matrix2d> bending = bendingOf(frame * offsets);
   if (!bending)
