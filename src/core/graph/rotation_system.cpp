@@ -231,7 +231,11 @@ bool RotationSystem::doCross(Index v, Index w, Index a, Index b) const {
 }
 
 Eigen::Vector3d RotationSystem::direction(Index v, Index w) const {
-  return (points_.col(w) - points_.col(v)).stableNormalized();
+  // Below this, squares lose digits, or all of them.
+  constexpr double safe = 1e-280;
+  const Eigen::Vector3d edge = points_.col(w) - points_.col(v);
+  const double squared = edge.squaredNorm();
+  return squared > safe ? Eigen::Vector3d(edge / std::sqrt(squared)) : edge.stableNormalized();
 }
 
 void RotationSystem::findNormals() {

@@ -185,6 +185,18 @@ bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
   return true;
 }
 
+/// The triangle of a face of three, as cutIntoTriangles() writes it: opposite to its shortest edge
+/// first.
+std::array<Index, 3> triangleOf(const Positions& points, const Row<Index>& face) {
+  std::array<double, 3> opposite{};
+  for (std::size_t i = 0; i < 3; ++i)
+    opposite[i] =
+        (points.col(face.begin()[(i + 1) % 3]) - points.col(face.begin()[(i + 2) % 3])).norm();
+  const auto tip = static_cast<std::size_t>(std::min_element(opposite.begin(), opposite.end()) -
+                                            opposite.begin());
+  return {face.begin()[(tip + 2) % 3], face.begin()[tip], face.begin()[(tip + 1) % 3]};
+}
+
 /// The triangles of the faces.
 Faces facesOf(const Positions& points, const RotationSystem& rotation) {
   TriangleList triangles;
@@ -192,6 +204,10 @@ Faces facesOf(const Positions& points, const RotationSystem& rotation) {
   Edges edges([&](Index v, Index w) { return graph.row(v).contains(w); });
   const NeighborRows faces = rotation.faces(3, 0.0);
   for (const Index i : faces.nodes()) {
+    if (faces.row(i).size() == 3) {
+      triangles.push_back(triangleOf(points, faces.row(i)));
+      continue;
+    }
     const std::vector<Index> face(faces.row(i).begin(), faces.row(i).end());
     std::vector<Index> nodes = face;
     sortUnique(nodes);
@@ -236,12 +252,14 @@ Faces filtered(const Faces& faces, const Condition& stays) {
 }
 
 /// Leaves the largest fan of each vertex.
-Faces withoutPinches(const Faces& faces, std::size_t vertices) {
+Faces withoutPinches(Faces faces, std::size_t vertices) {
   const Triangles& triangles = faces.triangles;
+  std::vector<Index> due = checkTopology(triangles, vertices, 1).nonmanifold_vertices;
+  if (due.empty())
+    return faces;
   const CornerTable corners(triangles, vertices, 1);
   Indexed<char> is_dropped(columnCount(triangles), 0);
-  for (std::vector<Index> due = checkTopology(triangles, vertices, 1).nonmanifold_vertices;
-       !due.empty();) {
+  while (!due.empty()) {
     std::vector<Index> dropped;
     for (const Index v : due) {
       const auto fans = fansAt(triangles, corners, is_dropped, v);
@@ -336,9 +354,12 @@ Tube shortestTube(const Positions& points, const Triangles& spheres, const Corne
 
 /// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
 /// edges first. Returns the piece with the most vertices.
-Faces joined(const Positions& points, const Graph& graph, const Faces& closed) {
+Faces joined(const Positions& points, const Graph& graph, Faces closed) {
   const Triangles& spheres = closed.triangles;
   UnionFind pieces = piecesOf(spheres, graph.size());
+  const auto is_of_first = [&](Index v) { return pieces.find(v) == pieces.find(spheres(0, 0)); };
+  if (std::all_of(spheres.row(0).begin(), spheres.row(0).end(), is_of_first))
+    return closed;
   const CornerTable corners(spheres, graph.size(), 1);
   std::vector<std::tuple<double, Index, Index>> edges;
   for (const Index v : graph.nodes())
@@ -490,8 +511,9 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 }
 
 /// Closes a mesh of faces.
-std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, const Faces& open) {
-  const Faces faces = joined(points, graph, closed(points, withoutPinches(open, graph.size())));
+std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, Faces open) {
+  const Faces faces =
+      joined(points, graph, closed(points, withoutPinches(std::move(open), graph.size())));
   // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
   if (faces.triangles.cols() < 4)
     return std::nullopt;
