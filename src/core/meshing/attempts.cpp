@@ -9,6 +9,7 @@
 #include "mesh_optimization.h"
 #include "open_mesh.h"
 #include "orientation.h"
+#include "sampling_analysis.h"
 #include "smoothing.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
@@ -149,11 +150,10 @@ private:
     constexpr double max_defects = 0.03;
     constexpr double min_of_sphere = 2.1;
     if (!are_handles_sure_)
-      are_handles_sure_ =
-          facesGenus() > 0 && defects() <= max_defects &&
-          (!cut() || min_of_cut * flippedEnergy(faces()) < flippedEnergy(*cut())) &&
-          ((cut() && defects() <= kFewDefects) ||
-           min_of_sphere * flippedEnergy(faces()) < flippedEnergy(sphere()));
+      are_handles_sure_ = facesGenus() > 0 && defects() <= max_defects &&
+                          (!cut() || min_of_cut * flippedEnergy(faces()) < flippedEnergy(*cut())) &&
+                          ((cut() && defects() <= kFewDefects) ||
+                           min_of_sphere * flippedEnergy(faces()) < flippedEnergy(sphere()));
     return *are_handles_sure_;
   }
 
@@ -317,12 +317,20 @@ private:
 
   // --- What all of them need
 
+  bool isEven() {
+    if (!is_even_) {
+      clock_.begin("optimization");
+      is_even_ = isEvenlySampled(points_, graph_, clock_.execution().threads);
+    }
+    return *is_even_;
+  }
+
   double flippedEnergy(Start& start) {
     if (!start.energy) {
       const Execution execution = clock_.limited();
       clock_.begin("optimization");
       start.mesh = flipMesh(points_, std::move(start.mesh), graph_,
-                            {plan_.openings().places(), false, options_.seed}, execution);
+                            {plan_.openings().places(), false, options_.seed, isEven()}, execution);
       start.energy = energyOf(start.mesh);
     }
     return *start.energy;
@@ -344,7 +352,7 @@ private:
     outcome.part.mesh = std::move(mesh);
     outcome.part.openings = plan_.openings();
     outcome.part.embedding = std::move(embedding);
-    finishMesh(points_, graph_, options_, clock_, outcome.part);
+    finishMesh(points_, graph_, options_, clock_, outcome.part, isEven());
     const SphereMesh& finished = outcome.part.mesh;
     outcome.left_out =
         graph_.size() - finished.surfaceVertexCount() + outcome.part.left_out_triangles;
@@ -359,6 +367,7 @@ private:
   std::optional<Outcome> best_;
   bool are_faces_tried_ = false;
   std::optional<bool> are_handles_sure_;
+  std::optional<bool> is_even_;
   std::optional<Start> faces_;
   std::optional<Start> sphere_;
   std::optional<std::optional<Start>> cut_;  ///< empty: there is none
@@ -368,17 +377,18 @@ private:
 }  // namespace
 
 void finishMesh(const Positions& points, const Graph& graph, const Options& options,
-                StageClock& clock, PartMesh& part) {
+                StageClock& clock, PartMesh& part, std::optional<bool> is_even) {
   const OpenPlaces* const places = part.openings.places();
   const bool is_smoothed = options.smoothing > 0;
   const auto optimize = [&](const Positions& at, bool is_last) {
+    const std::optional<bool> is_even_there = &at == &points ? is_even : std::nullopt;
     Execution execution = clock.limited();
     // The other half is for the smoothed points, which get an optimisation of their own.
     if (!is_last && execution.time_limit)
       *execution.time_limit /= 2.0;
     MeshOptimization optimized =
         optimizeMesh(at, std::move(part.mesh), graph,
-                     OptimizationOptions{places, is_last, options.seed, clock.share()}, execution);
+                     {places, is_last, options.seed, is_even_there, clock.share()}, execution);
     part.mesh = std::move(optimized.mesh);
     part.intersecting = std::move(optimized.intersecting);
     return optimized.report;

@@ -6,13 +6,16 @@
 #include "stage_clock.h"
 #include "surface_plan.h"
 
+#include <optional>
+
 namespace spherical_param::internal {
 
 /// Optimises a closed mesh, smooths it if that is wanted, and opens and cleans it.
 ///
-/// \param part with a closed mesh, the openings and the embedding; receives the rest.
+/// \param part    with a closed mesh, the openings and the embedding; receives the rest.
+/// \param is_even \see isEvenlySampled; unset: it is found.
 void finishMesh(const Positions& points, const Graph& graph, const Options& options,
-                StageClock& clock, PartMesh& part);
+                StageClock& clock, PartMesh& part, std::optional<bool> is_even = {});
 
 /// Meshes a graph by Method::Default: tries one way after the other, the cheap ones first, until a
 /// mesh is accepted, or else takes the best one.

@@ -17,13 +17,6 @@ namespace {
 
 namespace tuned = optimization_constants;
 
-/// Whether the sampling is even and independent of the surface's curvature.
-bool isEven(const Positions& points, const Graph& graph, int threads) {
-  const Sampling sampling = analyzeSampling(points, graph, threads);
-  return sampling.alignment < tuned::kMaxUnalignedSampling &&
-         sampling.unevenness < tuned::kMaxEvenSampling;
-}
-
 /// Flips with the energy that suits a sampling.
 ///
 /// \param mu of a sampling that is not even.
@@ -299,6 +292,11 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
   return found;
 }
 
+bool isEven(const Positions& points, const Graph& graph, const OptimizationOptions& options,
+            const Execution& execution) {
+  return options.is_even ? *options.is_even : isEvenlySampled(points, graph, execution.threads);
+}
+
 /// After work on smoothed points: untangles on the given ones, unless too many triangles intersect
 /// there. Returns the intersections.
 IntersectingPairs finishOn(const Positions& points, Workbench& bench) {
@@ -318,14 +316,14 @@ IntersectingPairs finishOn(const Positions& points, Workbench& bench) {
 SphereMesh flipMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
                     const OptimizationOptions& options, const Execution& execution) {
   Workbench bench(points, std::move(mesh), graph, options, execution);
-  flipFor(bench, isEven(points, graph, execution.threads), tuned::kMu);
+  flipFor(bench, isEven(points, graph, options, execution), tuned::kMu);
   return bench.mesh.mesh();
 }
 
 MeshOptimization optimizeMesh(const Positions& points, SphereMesh mesh, const Graph& graph,
                               const OptimizationOptions& options, const Execution& execution) {
   Workbench bench(points, std::move(mesh), graph, options, execution);
-  const bool is_even = isEven(points, graph, execution.threads);
+  const bool is_even = isEven(points, graph, options, execution);
   const auto flip = [&] {
     flipFor(bench, is_even, tuned::kMu);
     return roughVertices(bench.mesh, bench.report);

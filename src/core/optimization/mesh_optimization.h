@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace spherical_param::internal {
 
@@ -20,7 +21,9 @@ struct OptimizationOptions {
   /// there are too many intersections.
   bool finish_on_points = true;
   std::uint32_t seed = 1;  ///< of the random choice of parts
-  double share = 1.0;      ///< of the points of a cloud that is meshed in parts, and of the work
+  /// \see isEvenlySampled; unset: it is found.
+  std::optional<bool> is_even = {};
+  double share = 1.0;  ///< of the points of a cloud that is meshed in parts, and of the work
 };
 
 /// Report of an optimisation.

@@ -1,5 +1,6 @@
 #include "sampling_analysis.h"
 
+#include "optimization_constants.h"
 #include "point_spread.h"
 #include "rows.h"
 
@@ -98,6 +99,12 @@ Sampling analyzeSampling(const Positions& points, const Graph& graph, int thread
   if (samples > 0)
     result.unevenness = sums[2] / static_cast<double>(samples);
   return result;
+}
+
+bool isEvenlySampled(const Positions& points, const Graph& graph, int threads) {
+  const Sampling sampling = analyzeSampling(points, graph, threads);
+  return sampling.alignment < optimization_constants::kMaxUnalignedSampling &&
+         sampling.unevenness < optimization_constants::kMaxEvenSampling;
 }
 
 }  // namespace spherical_param::internal

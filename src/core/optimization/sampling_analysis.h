@@ -24,4 +24,7 @@ struct Sampling {
 /// \param points 3 x n; \param graph of its neighbours.
 Sampling analyzeSampling(const Positions& points, const Graph& graph, int threads);
 
+/// Whether the sampling is even and independent of the surface's curvature.
+bool isEvenlySampled(const Positions& points, const Graph& graph, int threads);
+
 }  // namespace spherical_param::internal
