@@ -57,7 +57,16 @@ private:
 
   /// The `count` nearest points, the nearest first.
   void findNearest(const double* place, std::size_t count, Nearest& nearest) const {
-    flann::KNNSimpleResultSet<double> found(count);
+    // From here on a heap is faster than a sorted list.
+    constexpr std::size_t many = 128;
+    if (count < many)
+      findNearest<flann::KNNSimpleResultSet<double>>(place, count, nearest);
+    else
+      findNearest<flann::KNNResultSet2<double>>(place, count, nearest);
+  }
+  template <typename ResultSet>
+  void findNearest(const double* place, std::size_t count, Nearest& nearest) const {
+    ResultSet found(count);
     index_.findNeighbors(found, place, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     nearest.points.resize(count);
     nearest.distances.resize(count);
