@@ -365,9 +365,11 @@ Result reconstruct(const Positions& points, const Options& given,
   internal::StageClock clock(options);
   Result result;
   const std::size_t parts = internal::explained(result.left_out, [&] {
-    if (internal::reconstructView(points, given, info, clock, result))
+    std::optional<internal::SearchedNodes> known;
+    if (internal::reconstructView(points, given, info, clock, result, known))
       return result.surfaces.size();
-    internal::Selection selection(points, given, search_of, info, clock, result.left_out);
+    internal::Selection selection(points, given, search_of, info, clock, result.left_out,
+                                  std::move(known));
     internal::meshParts(selection, options, clock, result);
     return selection.parts().size();
   });

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -71,13 +72,20 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& 
 
 Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs,
                              const Options& options, const NeighborSearchFactory& search_of,
-                             const Execution& execution)
-    : inputs_(inputs.begin(), inputs.end()),
-      nodes_(inputs.size() == columnCount(cloud)
-                 ? orderCheckedPoints(cloud, execution.threads)
-                 : orderCheckedPoints(cloud(Eigen::all, inputs), execution.threads)) {
-  neighbors_.search = search_of ? searchOfCaller(nodes_, inputs_, search_of, execution)
-                                : makeNeighborSearch(nodes_.points, execution);
+                             const Execution& execution, std::optional<SearchedNodes> known)
+    : inputs_(inputs.begin(), inputs.end()) {
+  if (known)
+    nodes_ = std::move(known->nodes);
+  else if (inputs.size() == columnCount(cloud))
+    nodes_ = orderCheckedPoints(cloud, execution.threads);
+  else
+    nodes_ = orderCheckedPoints(cloud(Eigen::all, inputs), execution.threads);
+  if (search_of)
+    neighbors_.search = searchOfCaller(nodes_, inputs_, search_of, execution);
+  else if (known && known->search)
+    neighbors_.search = std::move(known->search);
+  else
+    neighbors_.search = makeNeighborSearch(nodes_.points, execution);
   // The tangent Delaunay graph searches for up to 32 where 12 do not certify its cells.
   neighbors_.lists = neighbors_.search(firstIndices(nodes_.input_of_node.size()),
                                        options.method == Method::Paper ? options.paper.k : 12);

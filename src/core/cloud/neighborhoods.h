@@ -5,9 +5,16 @@
 #include "spherical_param/options.h"
 #include "tangent_stars.h"
 
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
+
+/// Nodes, and a search among them; the search may be empty.
+struct SearchedNodes {
+  OrderedPoints nodes;
+  NeighborSearch search;
+};
 
 /// The distinct points of a cloud, or of some of its points, with their neighbours. Those of points
 /// without outliers, or of a part, are found anew: to keep what has not changed saved 7 % of
@@ -20,10 +27,12 @@ public:
   /// \param inputs    indices of the points to use, ascending, finite.
   /// \param options   method, k
   /// \param search_of makes the search; empty: a k-d tree is built.
+  /// \param known     the nodes of these points, if they are known.
   /// \throw InvalidInput for too many points, too large coordinates, or fewer than four distinct
   ///        points.
   Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs, const Options& options,
-                const NeighborSearchFactory& search_of, const Execution& execution);
+                const NeighborSearchFactory& search_of, const Execution& execution,
+                std::optional<SearchedNodes> known = {});
 
   /// Finds the stars of all nodes and their agreed graph, if that is not done.
   void findStars(const Execution& execution);

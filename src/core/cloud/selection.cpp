@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -33,9 +34,9 @@ std::vector<Index> usableInputs(const Positions& points, const CloudInfo& info, 
 
 Selection::Selection(const Positions& points, const Options& given,
                      const NeighborSearchFactory& search_of, const CloudInfo& info,
-                     StageClock& clock, LeftOut& left_out)
+                     StageClock& clock, LeftOut& left_out, std::optional<SearchedNodes> known)
     : points_(points), options_(withTopology(given)), search_of_(search_of), info_(info),
-      clock_(clock), left_out_(left_out) {
+      clock_(clock), left_out_(left_out), known_(std::move(known)) {
   inputs_ = usableInputs(points, info, left_out);
   if (options_.outliers != OutlierMode::None || options_.parts != PartsMode::All)
     findNeighbors(inputs_).findStars(clock.execution());
@@ -53,7 +54,7 @@ Neighborhoods& Selection::findNeighbors(const std::vector<Index>& inputs) {
     // The caller's search is made once, among all points.
     cloud_ = std::make_unique<Neighborhoods>(points_, inputs, options_,
                                              cloud_ ? NeighborSearchFactory() : search_of_,
-                                             clock_.execution());
+                                             clock_.execution(), std::exchange(known_, {}));
   }
   clock_.begin("graph");
   return *cloud_;

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -26,9 +27,11 @@ public:
   ///                  small.
   /// \param info      of the points.
   /// \param left_out  receives the points that are not meshed.
+  /// \param known     the nodes of usableInputs(), if they are known.
   /// \throw InvalidInput if too few points are left.
   Selection(const Positions& points, const Options& given, const NeighborSearchFactory& search_of,
-            const CloudInfo& info, StageClock& clock, LeftOut& left_out);
+            const CloudInfo& info, StageClock& clock, LeftOut& left_out,
+            std::optional<SearchedNodes> known = {});
 
   /// The points of each part, the largest part first. Empty if all are too small.
   const std::vector<std::vector<Index>>& parts() const { return parts_; }
@@ -58,6 +61,7 @@ private:
   const CloudInfo& info_;
   StageClock& clock_;
   LeftOut& left_out_;
+  std::optional<SearchedNodes> known_;    ///< until the neighbours are found
   std::vector<Index> inputs_;             ///< all finite points without outliers
   std::unique_ptr<Neighborhoods> cloud_;  ///< of the inputs, then of one part after the other
   std::vector<std::vector<Index>> parts_;

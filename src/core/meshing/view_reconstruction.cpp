@@ -34,11 +34,19 @@ const char* obstacleOf(const Options& options) {
 }
 
 /// The mesh from the place that the caller gave, or from one that is found.
+///
+/// \param search among the nodes; is made if it is needed.
 std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& options,
-                                const CloudInfo& info, const Execution& execution) {
+                                const CloudInfo& info, const Execution& execution,
+                                NeighborSearch& search) {
   if (!isGiven(options)) {
+    // Smaller clouds are meshed so fast that a look takes longer.
+    constexpr Eigen::Index min_points = 1000;
+    if (nodes.points.cols() < min_points)
+      return std::nullopt;
+    search = makeNeighborSearch(nodes.points, execution);
     const Eigen::Vector3d viewpoint = info.viewpoint.value_or(Eigen::Vector3d::Zero());
-    return findView(nodes.points, timesPowerOfTwo(viewpoint, -nodes.exponent), execution);
+    return findView(nodes.points, timesPowerOfTwo(viewpoint, -nodes.exponent), search, execution);
   }
   const Eigen::Vector3d place = givenPlace(nodes.points, std::ldexp(1.0, nodes.exponent), options);
   FoundView view{triangulateView(nodes.points, place, reportOf(execution, "view")),
@@ -274,7 +282,7 @@ std::vector<Surface> surfacesOf(std::vector<ViewPiece> pieces, const Options& op
 }  // namespace
 
 bool reconstructView(const Positions& points, const Options& given, const CloudInfo& info,
-                     StageClock& clock, Result& result) {
+                     StageClock& clock, Result& result, std::optional<SearchedNodes>& known) {
   Options options = withTopology(given);
   // A closed mesh is made by the general method, from the directions.
   if (options.view == ViewMode::None || options.surface == SurfaceMode::Closed)
@@ -290,11 +298,13 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   const std::vector<Index> inputs = usableInputs(points, info, left_out);
   if (inputs.size() < 4)
     return false;  // refused there
-  const OrderedPoints nodes =
-      orderCheckedPoints(Positions(points(Eigen::all, inputs)), options.threads);
-  std::optional<FoundView> view = viewOf(nodes, options, info, clock.execution());
+  known =
+      SearchedNodes{orderCheckedPoints(Positions(points(Eigen::all, inputs)), options.threads), {}};
+  const OrderedPoints& nodes = known->nodes;
+  std::optional<FoundView> view = viewOf(nodes, options, info, clock.execution(), known->search);
   if (!view)
     return false;
+  known->search = {};
   // Points that are too few for a part are one, as they are without a view.
   if (given.parts == PartsMode::AsTopology &&
       inputs.size() < static_cast<std::size_t>(options.min_points))

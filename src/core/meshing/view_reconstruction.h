@@ -1,10 +1,13 @@
 #pragma once
 
+#include "neighborhoods.h"
 #include "spherical_param/options.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
 #include "stage_clock.h"
+
+#include <optional>
 
 namespace spherical_param::internal {
 
@@ -13,10 +16,11 @@ namespace spherical_param::internal {
 ///
 /// \param points  3 x n, finite or not.
 /// \param given   options.
+/// \param known   receives the nodes of usableInputs() if they were found in vain.
 /// \return false if there is no such place, or other options need the general method. Nothing has
 ///         changed then.
 /// \throw InvalidInput if the caller gave a place from which there is no mesh, or such options.
 bool reconstructView(const Positions& points, const Options& given, const CloudInfo& info,
-                     StageClock& clock, Result& result);
+                     StageClock& clock, Result& result, std::optional<SearchedNodes>& known);
 
 }  // namespace spherical_param::internal

@@ -130,9 +130,9 @@ std::optional<Eigen::Vector3d> axisOfSheet(const Positions& points) {
 
 class Searcher {
 public:
-  Searcher(const Positions& points, const Execution& execution)
+  Searcher(const Positions& points, const NeighborSearch& search, const Execution& execution)
       : points_(points), execution_(execution), report_(reportOf(execution, "view")),
-        pattern_(points, makeNeighborSearch(points, execution)) {}
+        pattern_(points, search) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
     // Smaller clouds are meshed so fast that a search takes longer.
@@ -261,10 +261,8 @@ private:
 }  // namespace
 
 std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
-                                  const Execution& execution) {
-  // Smaller clouds are meshed so fast that a look takes longer.
-  constexpr Eigen::Index min_points = 1000;
-  return points.cols() < min_points ? std::nullopt : Searcher(points, execution).run(viewpoint);
+                                  const NeighborSearch& search, const Execution& execution) {
+  return Searcher(points, search, execution).run(viewpoint);
 }
 
 bool isGiven(const Options& options) {

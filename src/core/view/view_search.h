@@ -49,10 +49,11 @@ struct FoundView {
 ///
 /// \param points    3 x n, finite, distinct, of an extent about 1.
 /// \param viewpoint in the unit of the points; the origin if it is unknown.
+/// \param search    among the points.
 /// \return nothing if there is none.
 /// Cost: where there is none, 10 to 50 ms and O(n log n) with a small constant.
 std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
-                                  const Execution& execution);
+                                  const NeighborSearch& search, const Execution& execution);
 
 /// Whether the points are the heights of at least half of the places of a grid in x and y: a
 /// surface without jumps.

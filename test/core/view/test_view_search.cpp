@@ -3,6 +3,7 @@
 #include "depth_images.h"
 #include "depth_jumps.h"
 #include "handle_shapes.h"
+#include "neighbor_search.h"
 #include "open_shapes.h"
 #include "ordered_points.h"
 
@@ -13,8 +14,9 @@ using namespace test;
 
 std::optional<FoundView> found(const Positions& points,
                                const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero()) {
-  return findView(orderPoints(points, 1).points,
-                  viewpoint * std::ldexp(1.0, -orderPoints(points, 1).exponent), {});
+  const OrderedPoints nodes = orderPoints(points, 1);
+  return findView(nodes.points, viewpoint * std::ldexp(1.0, -nodes.exponent),
+                  makeNeighborSearch(nodes.points), {});
 }
 
 Positions room(int columns, int rows) {
@@ -48,7 +50,8 @@ TEST(ViewSearch, FindsTheOriginTheViewpointAndTheSheet) {
 
 TEST(ViewSearch, FindsWhereRaysComeFrom) {
   const OrderedPoints nodes = orderPoints(elsewhere(room(170, 130)), 1);
-  const auto view = findView(nodes.points, Eigen::Vector3d::Zero(), {});
+  const auto view =
+      findView(nodes.points, Eigen::Vector3d::Zero(), makeNeighborSearch(nodes.points), {});
   ASSERT_TRUE(view);
   EXPECT_EQ(view->source, ViewSource::Rays);
   const Eigen::Vector3d place = std::ldexp(1.0, nodes.exponent) * view->mesh.place;
