@@ -235,7 +235,7 @@ Eigen::Vector3d RotationSystem::direction(Index v, Index w) const {
   constexpr double safe = 1e-280;
   const Eigen::Vector3d edge = points_.col(w) - points_.col(v);
   const double squared = edge.squaredNorm();
-  return squared > safe ? Eigen::Vector3d(edge / std::sqrt(squared)) : edge.stableNormalized();
+  return squared > safe ? Eigen::Vector3d(1.0 / std::sqrt(squared) * edge) : edge.stableNormalized();
 }
 
 void RotationSystem::findNormals() {
@@ -246,7 +246,9 @@ void RotationSystem::findNormals() {
     double count = 0.0;
     const auto add = [&](Index w) {
       const Eigen::Vector3d d = direction(v, w);
-      moments += d * d.transpose();
+      moments.col(0) += d.x() * d;
+      moments.col(1).tail<2>() += d.y() * d.tail<2>();
+      moments(2, 2) += d.z() * d.z();
       sum += d;
       count += 1.0;
     };
@@ -256,6 +258,7 @@ void RotationSystem::findNormals() {
         if (x != v)
           add(x);
     }
+    moments = moments.selfadjointView<Eigen::Lower>();
     // How far the moments of directions are taken about their mean, not about 0.
     constexpr double centered = 0.5;
     // On a sharp edge the moments alone would decide for one of its two planes.
