@@ -15,7 +15,7 @@ namespace spherical_param::internal {
 inline constexpr std::size_t kBlockSize = 512;
 /// Below this many items several threads cost more than they gain. Ten times as many for short
 /// passes gained nothing on three models, beside busy processes or alone.
-inline constexpr std::size_t kParallelThreshold = 4096;
+inline constexpr std::size_t kParallelThreshold = 2048;
 
 /// Minimum number of items between reports: each parallel region waits for its slowest thread.
 inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
