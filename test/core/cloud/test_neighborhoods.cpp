@@ -27,6 +27,24 @@ TEST(Neighborhoods, GroupsOfNodesAreThoseOfTheirInputsTheLargestFirst) {
   EXPECT_EQ(of.inputsOf(marked), (std::vector<Index>{2, 3, 11}));
 }
 
+TEST(Neighborhoods, KnownNodesAndTheirSearchAreUsed) {
+  const Positions cloud = randomSphere(40, 1);
+  int questions = 0;
+  const SearchedNodes known{orderPoints(cloud, 1),
+                            [&](const std::vector<Index>& queries, int count) {
+                              ++questions;
+                              return bruteForceSearch(orderPoints(cloud, 1).points)(queries, count);
+                            }};
+  Neighborhoods of(cloud, range(0, 40), {}, {}, {}, known);
+  EXPECT_EQ(of.points(), known.nodes.points);
+  EXPECT_EQ(questions, 1);
+  EXPECT_EQ(of.neighbors().lists.size(), 40U);
+  // The caller's search comes first.
+  const auto of_caller = [&](const std::vector<Index>&) { return bruteForceSearch(cloud); };
+  const Neighborhoods searched(cloud, range(0, 40), {}, of_caller, {}, known);
+  EXPECT_EQ(questions, 1);
+}
+
 TEST(Neighborhoods, WrongAnswersAndExceptionsOfTheSearchComeOut) {
   const Positions points = horizontally(randomSphere(60, 1), randomSphere(60, 1));
   const NeighborLists lists = bruteForceNeighbors(points.leftCols(60), 12);

@@ -31,7 +31,7 @@ TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
   for (const Positions& points : {randomSphere(300, 1), cubeGrid(6)}) {
     const NeighborSearch search = makeNeighborSearch(points);
     const std::vector<Index> queries{7, 0, 7, 120, 3};
-    for (const int count : {0, 1, 12, 10000})
+    for (const int count : {0, 1, 12, 140, 10000})
       expectNearest(points, queries, count, search(queries, count));
     expectNearest(points, range(0, points.cols()), 5, findNearestNeighbors(points, 5));
   }

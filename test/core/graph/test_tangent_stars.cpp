@@ -55,6 +55,18 @@ ExpectedStar bruteForceStar(const Positions& points, Index i, const std::vector<
   return star;
 }
 
+TEST(TangentStars, KnowTheHeightOfThePointOverItsPlane) {
+  // Over the middle of ten points on a circle of radius 1: across it, their variance is 1 / 2.
+  const Positions points = pointsAt(11, [](Index i) {
+    const double angle = 2.0 * kPi * i / 10.0;
+    return i < 10 ? Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)
+                  : Eigen::Vector3d(0.0, 0.0, 0.25);
+  });
+  const Stars stars = findStars(points, {findNearestNeighbors(points, 10), {}}, {});
+  EXPECT_TRUE(stars[10].tangent_plane);
+  EXPECT_NEAR(stars[10].height, 0.25 / std::sqrt(0.5), 1e-6);
+}
+
 TEST(TangentStars, AreTheVoronoiNeighborsInTheTangentPlane) {
   // A surface, and one with a rim, whose cells are not bounded.
   Positions dome = randomSphere(200, 1);

@@ -29,6 +29,18 @@ TEST(Attempts, HandlesAreMeshed) {
   expectSoundWithHandles(surfaceOf(lattice(Eigen::all, some)), 28);
 }
 
+TEST(Attempts, HandlesOfFacesThatCloseUpNeedNoEmbedding) {
+  // Of a flat ring, the sphere costs hardly more energy than the faces.
+  Positions flat = torusCloud(90, 24);
+  flat.row(2) *= 0.5;
+  for (const Positions& points : {torusCloud(60, 24), flat}) {
+    const Result result = reconstruct(points);
+    expectSoundWithHandles(result.surfaces.front(), 1);
+    for (const StageTime& stage : result.stages)
+      EXPECT_NE(stage.name, "embedding");
+  }
+}
+
 TEST(Attempts, ThinTubesAndFatTori) {
   // Of 4 to 9 points around the tube, and of the least sizes.
   for (const int around : {4, 6, 9})

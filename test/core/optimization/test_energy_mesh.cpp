@@ -90,6 +90,26 @@ TEST(EnergyMesh, IntersectionsAreThoseOfItsTriangles) {
   }
 }
 
+TEST(EnergyMesh, IntersectionsOfWhatWasTouchedAreThoseOfASearch) {
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    EXPECT_EQ(mesh.takeTouched().size(), columnCount(of.triangles));
+    EXPECT_TRUE(mesh.takeTouched().empty());
+    IntersectingPairs found = findIntersections(mesh, 10000, {});
+    std::mt19937_64 random(7);
+    for (const bool is_kept : {true, false, true}) {
+      mesh.begin();
+      moveAtRandom(mesh, random);
+      if (is_kept)
+        mesh.commit();
+      else
+        mesh.rollBack();
+      updateIntersections(mesh, mesh.takeTouched(), found);
+      EXPECT_EQ(found.pairs, findIntersections(mesh, 10000, {}).pairs);
+    }
+  }
+}
+
 TEST(EnergyMesh, BoundsOfGainsAndCostsChangeNoneBeyondThem) {
   for (const Case& of : roughCases()) {
     EnergyMesh mesh = meshOf(of);
