@@ -260,7 +260,7 @@ bool areOnLines(const Positions& points, const Graph& graph) {
   constexpr std::size_t neighbors = 4;
   constexpr std::size_t min_points = 100;
   std::vector<double> ratios;
-  const auto step = static_cast<Index>(graph.size() / 1000 + 1);
+  const auto step = static_cast<Index>(graph.size() / 250 + 1);
   for (Index v = 0; v < points.cols(); v += step) {
     std::vector<Index> near = withinTwoSteps(graph, v);
     if (near.size() < neighbors)

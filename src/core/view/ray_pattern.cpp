@@ -2,6 +2,7 @@
 
 #include "indexed.h"
 #include "neighbor_search.h"
+#include "parallel.h"
 #include "place_descent.h"
 #include "rows.h"
 
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -121,7 +121,7 @@ Eigen::Vector3d RayPattern::densest() const {
   return points_(Eigen::all, order).rowwise().mean();
 }
 
-std::optional<Eigen::Vector3d> RayPattern::find() const {
+std::optional<Eigen::Vector3d> RayPattern::find(int threads) const {
   constexpr int directions = 50;
   constexpr double first_step = 0.2;
   constexpr double coarse_step = 0.01;
@@ -132,29 +132,23 @@ std::optional<Eigen::Vector3d> RayPattern::find() const {
   const double extent = extentOf(points_);
   // A scanner within the points is near where they are densest, in a narrow valley of the cost.
   std::array<Eigen::Vector3d, 2> starts = {densest(), middle};
-  double least_cost = std::numeric_limits<double>::infinity();
+  std::vector<Eigen::Vector3d> places;
   for (const double radii : {0.3, 0.6, 1.2, 2.5})
-    for (const Eigen::Vector3d& direction : spreadDirections(directions)) {
-      const Eigen::Vector3d place = middle + radii * extent * direction;
-      if (const double cost = unevenness(place, false); cost < least_cost) {
-        least_cost = cost;
-        starts[1] = place;
-      }
-    }
-  double least = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d best = middle;
-  for (Eigen::Vector3d& place : starts) {
-    for (const bool is_quadratic : {false, true}) {
-      const double found =
-          descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); }, axes,
-                  first_step * extent, (is_quadratic ? least_step : coarse_step) * extent,
-                  most_moves, place);
-      if (is_quadratic && found < least) {
-        least = found;
-        best = place;
-      }
-    }
-  }
+    for (const Eigen::Vector3d& direction : spreadDirections(directions))
+      places.emplace_back(middle + radii * extent * direction);
+  std::vector<double> costs(places.size());
+  forEachTask(places.size(), threads,
+              [&](std::size_t i) { costs[i] = unevenness(places[i], false); });
+  starts[1] = places[static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) -
+                                              costs.begin())];
+  std::array<double, 2> found{};
+  forEachTask(starts.size(), threads, [&](std::size_t i) {
+    for (const bool is_quadratic : {false, true})
+      found[i] = descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); },
+                         axes, first_step * extent,
+                         (is_quadratic ? least_step : coarse_step) * extent, most_moves, starts[i]);
+  });
+  const Eigen::Vector3d best = starts[found[1] < found[0] ? 1 : 0];
   return isSensor(best) ? std::optional(best) : std::nullopt;
 }
 

@@ -23,7 +23,7 @@ public:
 
   /// The place from which the angles between neighbouring rays change least; none if they change
   /// too much.
-  std::optional<Eigen::Vector3d> find() const;
+  std::optional<Eigen::Vector3d> find(int threads) const;
 
 private:
   double unevenness(const Eigen::Vector3d& place, bool is_quadratic) const;

@@ -150,7 +150,7 @@ public:
     if (isElevationGrid(points_))
       return from(farAbove(points_, Eigen::Vector3d::UnitZ()), ViewSource::Above);
     if (points_.cols() >= min_searched)
-      if (const auto place = pattern_.find())
+      if (const auto place = pattern_.find(threadCount(execution_.threads, columnCount(points_))))
         if (auto found = from(refined(*place), ViewSource::Rays))
           return found;
     const auto axis = axisOfSheet(points_);
@@ -166,7 +166,9 @@ private:
       const Positions sample = points_(Eigen::all, sampleOf(points_, most));
       const Sight sight =
           assessView(sample, spacingOf(sample, execution_), triangulateView(sample, place, {}));
-      if (!(sight.jumps < max_jumps))
+      // What is all around in the sample is so in the cloud.
+      if (!(sight.jumps < max_jumps) ||
+          (sight.is_around && source != ViewSource::Given && !pattern_.isSpreadFrom(place)))
         return std::nullopt;
     }
     FoundView found{triangulateView(points_, place, report_), source, {}};

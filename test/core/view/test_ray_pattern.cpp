@@ -16,7 +16,7 @@ TEST(RayPattern, IsThatOfACameraFromItsPlaceAlone) {
   const RayPattern pattern = patternOf(withDepthNoise(depthImage(80, 60, ballInRoom), 0.002, 1));
   EXPECT_TRUE(pattern.isSensor(Eigen::Vector3d::Zero()));
   EXPECT_FALSE(pattern.isSensor(Eigen::Vector3d(5.0, 0.0, 9.0)));
-  const auto place = pattern.find();
+  const auto place = pattern.find(2);
   ASSERT_TRUE(place);
   EXPECT_LT(place->norm(), 0.6);  // of an extent of 5
 }
@@ -35,7 +35,7 @@ TEST(RayPattern, OfAScannerWithinThePointsSpreadsWithTheDistance) {
 TEST(RayPattern, OfAnEvenSurfaceIsNoSensors) {
   const RayPattern pattern = patternOf(spiralSphere(3000));
   EXPECT_FALSE(pattern.isSensor(Eigen::Vector3d::Zero()));
-  EXPECT_FALSE(pattern.find());
+  EXPECT_FALSE(pattern.find(2));
 }
 
 }  // namespace
