@@ -8,25 +8,24 @@
 
 namespace spherical_param::internal {
 
-std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles,
-                                              std::size_t vertex_count) {
-  const CornerTable corners(triangles, vertex_count, 1);
-  const auto has_side = [&](Index v, Index w) {
-    // At the end with fewer triangles: the other one may be a hub.
-    const bool at_first = corners.countAt(v) <= corners.countAt(w);
-    bool is_found = false;
-    corners.forEachCorner(at_first ? v : w, [&](Index t, Index k) {
-      is_found = is_found ||
-                 triangles(at_first ? nextCorner(k) : previousCorner(k), t) == (at_first ? w : v);
-    });
-    return is_found;
-  };
+std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles, std::size_t vertex_count,
+                                              int threads) {
+  threads = threadCount(threads, vertex_count);
+  const CornerTable corners(triangles, vertex_count, threads);
   // The vertex after each in the boundary: where an edge has no triangle on its other side.
   Indexed<Index> next(vertex_count, -1);
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k)
-      if (!has_side(triangles((k + 1) % 3, t), triangles(k, t)))
-        next[triangles(k, t)] = triangles((k + 1) % 3, t);
+  using Vertices = std::vector<Index>;
+  forEachIndex<Vertices>(vertex_count, threads, {}, [&](Vertices& before, Index v) {
+    before.clear();
+    corners.forEachCorner(
+        v, [&](Index t, Index k) { before.push_back(triangles(previousCorner(k), t)); });
+    std::sort(before.begin(), before.end());
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      const Index after = triangles(nextCorner(k), t);
+      if (!std::binary_search(before.begin(), before.end(), after))
+        next[v] = after;
+    });
+  });
   std::vector<std::vector<Index>> loops;
   for (const Index v : indicesOf(next)) {
     if (next[v] < 0)

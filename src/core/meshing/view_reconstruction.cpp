@@ -133,7 +133,8 @@ public:
       mesh.points = points(Eigen::all, mesh.input_of_vertex);
       if (normals.cols() > 0)
         faceNormals(normals(Eigen::all, mesh.input_of_vertex), mesh);
-      for (std::vector<Index>& loop : boundaryLoops(mesh.triangles, columnCount(mesh.points)))
+      for (std::vector<Index>& loop :
+           boundaryLoops(mesh.triangles, columnCount(mesh.points), options_.threads))
         mesh.openings.push_back(openingOf(mesh.points, spacing[i], std::move(loop)));
     }
     for (const Gap& gap : filled)

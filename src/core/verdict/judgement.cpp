@@ -28,7 +28,7 @@ Surface judge(FinishedMesh mesh, SurfaceDiagnosis diagnosis, const Options& opti
   result.is_out_of_time = mesh.is_out_of_time;
   result.topology = checkTopology(result.triangles, result.vertexCount(), options.threads);
   if (!result.topology.closed)
-    result.boundary = boundaryLoops(result.triangles, result.vertexCount());
+    result.boundary = boundaryLoops(result.triangles, result.vertexCount(), options.threads);
   result.measures = measureMesh(result.points, result.triangles, options.threads);
   result.diagnosis = std::move(diagnosis);
   if (options.details) {

@@ -92,14 +92,26 @@ Sight assessView(const Positions& points, const Indexed<double>& spacing, const 
 
 bool isElevationGrid(const Positions& points) {
   constexpr std::size_t min_lines = 10;
-  std::array<std::vector<double>, 2> lines;
-  for (Eigen::Index k = 0; k < 2; ++k) {
-    const auto row = points.row(k);
-    lines[static_cast<std::size_t>(k)].assign(row.begin(), row.end());
-    sortUnique(lines[static_cast<std::size_t>(k)]);
-  }
-  if (std::min(lines[0].size(), lines[1].size()) < min_lines ||
-      lines[0].size() * lines[1].size() > 2 * columnCount(points))
+  // The numbers of lines along x and y of the first so many points.
+  const auto lines_of = [&](std::size_t count) {
+    std::array<std::size_t, 2> lines{};
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const auto row = points.row(k).head(static_cast<Eigen::Index>(count));
+      std::vector<double> values(row.begin(), row.end());
+      sortUnique(values);
+      lines[static_cast<std::size_t>(k)] = values.size();
+    }
+    return lines;
+  };
+  const auto are_many = [&](const std::array<std::size_t, 2>& lines) {
+    return lines[0] * lines[1] > 2 * columnCount(points);
+  };
+  // Of few points there are as many lines as of many, unless they are on a grid.
+  const auto few = static_cast<std::size_t>(4.0 * std::sqrt(static_cast<double>(points.cols())));
+  if (are_many(lines_of(std::min(few, columnCount(points)))))
+    return false;
+  const std::array<std::size_t, 2> lines = lines_of(columnCount(points));
+  if (std::min(lines[0], lines[1]) < min_lines || are_many(lines))
     return false;
   std::vector<std::pair<double, double>> places;
   for (const auto& point : points.colwise())
