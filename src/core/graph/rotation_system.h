@@ -31,6 +31,7 @@ public:
   RotationSystem(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                  int threads);
 
+  int threads() const { return threads_; }
   /// The neighbours of each node, counter-clockwise.
   const NeighborRows& edges() const { return edges_; }
   /// Leaves out the edges between opposite sheets.

@@ -252,9 +252,9 @@ Faces filtered(const Faces& faces, const Condition& stays) {
 }
 
 /// Leaves the largest fan of each vertex.
-Faces withoutPinches(Faces faces, std::size_t vertices) {
+Faces withoutPinches(Faces faces, std::size_t vertices, int threads) {
   const Triangles& triangles = faces.triangles;
-  std::vector<Index> due = checkTopology(triangles, vertices, 1).nonmanifold_vertices;
+  std::vector<Index> due = checkTopology(triangles, vertices, threads).nonmanifold_vertices;
   if (due.empty())
     return faces;
   const CornerTable corners(triangles, vertices, 1);
@@ -278,12 +278,12 @@ Faces withoutPinches(Faces faces, std::size_t vertices) {
 }
 
 /// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
-Faces closed(const Positions& points, const Faces& faces) {
+Faces closed(const Positions& points, const Faces& faces, int threads) {
   // The time for the best triangles grows with the cube of a loop.
   constexpr std::size_t max_loop = 150;
   const Triangles& open = faces.triangles;
   const std::size_t vertices = columnCount(points);
-  const CornerTable corners(open, vertices, 1);
+  const CornerTable corners(open, vertices, threads);
   UnionFind pieces = piecesOf(open, vertices);
   Edges edges([&](Index v, Index w) {
     bool are_joined = false;
@@ -303,7 +303,7 @@ Faces closed(const Positions& points, const Faces& faces) {
   };
   TriangleList fillings;
   Indexed<char> is_left_out(vertices, 0);
-  for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
+  for (std::vector<Index>& loop : boundaryLoops(open, vertices, threads)) {
     std::vector<Eigen::Vector3d> beyond;
     std::reverse(loop.begin(), loop.end());
     for (std::size_t i = 0; i < loop.size(); ++i)
@@ -511,13 +511,15 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 }
 
 /// Closes a mesh of faces.
-std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, Faces open) {
+std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, Faces open,
+                                 int threads = 1) {
   const Faces faces =
-      joined(points, graph, closed(points, withoutPinches(std::move(open), graph.size())));
+      joined(points, graph,
+             closed(points, withoutPinches(std::move(open), graph.size(), threads), threads));
   // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
   if (faces.triangles.cols() < 4)
     return std::nullopt;
-  SphereMesh mesh(faces.triangles, graph.size());
+  SphereMesh mesh(faces.triangles, graph.size(), threads);
   for (Index t = 0; t < mesh.size(); ++t)
     mesh.setOpen(t, faces.is_filling[t] != 0);
   return mesh;
@@ -527,7 +529,7 @@ std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, Fa
 
 std::optional<SphereMesh> meshFaces(const Positions& points, const Graph& graph,
                                     const RotationSystem& rotation) {
-  return meshOf(points, graph, facesOf(points, rotation));
+  return meshOf(points, graph, facesOf(points, rotation), rotation.threads());
 }
 
 std::optional<SphereMesh> withoutHandles(const Positions& points, const Graph& graph,
