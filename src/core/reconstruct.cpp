@@ -229,7 +229,7 @@ Surface meshConsolidated(Selection& all, std::size_t part, const Options& option
 bool isNoisySurface(Selection& selection, std::size_t part, StageClock& clock) {
   const Neighborhoods& cloud = selection.neighborhoodsOf(part);
   clock.begin("consolidation");
-  return isNoisy(cloud.points(), cloud.neighbors(), cloud.stars()) &&
+  return isNoisy(cloud.points(), cloud.neighbors(), cloud.stars(), clock.execution()) &&
          spreadOf(cloud.points()) == PointSpread::Surface;
 }
 

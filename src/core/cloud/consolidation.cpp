@@ -463,7 +463,8 @@ double squaredDistance(const Eigen::Vector3d& point, const Eigen::Matrix3d& corn
 
 }  // namespace
 
-bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars) {
+bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars,
+             const Execution& execution) {
   // Noise is the median error of the prediction of a point by its 10 nearest. In spacings, that of
   // clean clouds is at most .12, of merged scans .13 to .28, of noise of one spacing .45.
   constexpr double min_noise = 0.12;
@@ -483,7 +484,8 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
   for (Index i = 0; i < n; i += n / samples + 1)
     queries.push_back(i);
   if (!neighbors.search || queries.size() < samples / 2 ||
-      !(oneSidedFraction(stars) > min_disagreement))
+      !(oneSidedFraction(stars, execution.threads, reportOf(execution, "consolidation")) >
+        min_disagreement))
     return false;
   constexpr Index reach = 6 * kLeastSize;  // of the weights, around 20 neighbours
   const NeighborLists lists = neighbors.search(queries, reach);

@@ -44,7 +44,8 @@ namespace internal {
 ///
 /// \param points 3 x n, with their neighbours and stars. Too few points are not noisy.
 /// Cost: that of 400 fits, and of a comparison of the stars.
-bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars);
+bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars,
+             const Execution& execution);
 
 /// The distance from a mesh within which a fraction of some points are, measured to the triangles
 /// around the vertex of each.

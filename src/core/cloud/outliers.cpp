@@ -54,22 +54,23 @@ std::vector<NearPoint> nearestOnSurface(const Positions& points, Index i, const 
 std::vector<Index> pointsOffPlane(const Stars& stars, const Indexed<char>& is_stray, int threads) {
   // Of 831 near outliers of 286 clouds one is missed, also with 0.25; with 0.3, three.
   constexpr float max_height = 0.2F;
-  return collectBlocks<Index>(stars.size(), threads, {},
-                              [&](Index begin, Index end, std::vector<Index>& found) {
-                                for (Index i = begin; i < end; ++i)
-                                  if (is_stray[i] == 0 &&
-                                      !(stars[i].tangent_plane && stars[i].height <= max_height))
-                                    found.push_back(i);
-                              });
+  return collectBlocks<Index>(
+      stars.size(), threads, {}, [&](Index begin, Index end, std::vector<Index>& found) {
+        for (Index i = begin; i < end; ++i)
+          if (is_stray[i] == 0 && !(stars[i].tangent_plane && stars[i].height <= max_height))
+            found.push_back(i);
+      });
 }
 
 /// Marks isolated points near a surface: they are far from the quadric through their neighbours,
 /// relative to the spacing there and to how far the neighbours are from it.
 Indexed<char> nearOutliers(const Positions& points, const Neighbors& neighbors, const Stars& stars,
-                           const Indexed<char>& is_stray, int threads) {
+                           const Indexed<char>& is_stray, const Execution& execution) {
+  const int threads = threadCount(execution.threads, stars.size());
+  const FractionReport report = reportOf(execution, "outliers");
   Indexed<char> marked(stars.size(), 0);
   Indexed<double> spacing(stars.size());
-  forEachIndex(stars.size(), threads, {}, [&](Index i) {
+  forEachIndex(stars.size(), threads, report, [&](Index i) {
     // The fourth is the median of six.
     const auto near = nearestOnSurface(points, i, listOf(neighbors.lists, i), is_stray, 4);
     spacing[i] = near.empty() ? 0.0 : std::sqrt(near.back().squared_distance);
@@ -78,7 +79,7 @@ Indexed<char> nearOutliers(const Positions& points, const Neighbors& neighbors, 
   for (std::size_t count = kFittedNeighbors; !due.empty() && count < stars.size(); count *= 2) {
     const NeighborLists lists = neighbors.search(due, static_cast<int>(count));
     Indexed<char> has_few(due.size(), 0);  // the others in the list are stray
-    forEachIndex<QuadricFit>(due.size(), threads, {}, [&](QuadricFit& quadric, Index list) {
+    forEachIndex<QuadricFit>(due.size(), threads, report, [&](QuadricFit& quadric, Index list) {
       const Index i = due[static_cast<std::size_t>(list)];
       const auto near =
           nearestOnSurface(points, i, listOf(lists, list), is_stray, kFittedNeighbors);
@@ -242,8 +243,7 @@ Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& poin
   // The others among themselves: those of a net have each other for neighbours, and stray points
   // between two sheets are in the plane of both.
   if (mode == OutlierMode::Auto) {
-    const Indexed<char> is_off = nearOutliers(points, neighbors, stars, marked,
-                                              threadCount(execution.threads, stars.size()));
+    const Indexed<char> is_off = nearOutliers(points, neighbors, stars, marked, execution);
     for (const Index i : indicesOf(is_off))
       if (is_off[i] != 0)
         marked[i] = 1;

@@ -64,9 +64,9 @@ void Selection::leaveOutOutliers() {
   clock_.begin("outliers");
   const std::vector<StrayPoint> stray =
       strayPoints(cloud_->points(), cloud_->agreed(), cloud_->stars());
-  left_out_.outliers = cloud_->inputsOf(
-      markOutliers(options_.outliers, options_.outlier_sigma, cloud_->points(),
-                   cloud_->neighbors(), cloud_->stars(), stray, clock_.execution()));
+  left_out_.outliers = cloud_->inputsOf(markOutliers(options_.outliers, options_.outlier_sigma,
+                                                     cloud_->points(), cloud_->neighbors(),
+                                                     cloud_->stars(), stray, clock_.execution()));
   if (left_out_.outliers.empty())
     return;
   inputs_ = without(inputs_, left_out_.outliers);

@@ -485,15 +485,26 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Execu
   return stars;
 }
 
-double oneSidedFraction(const Stars& stars) {
-  std::size_t all = 0;
-  std::size_t one_sided = 0;
-  for (const Index i : indicesOf(stars))
-    for (const Index j : stars.of(i)) {
-      ++all;
-      one_sided += stars.of(j).contains(i) ? 0 : 1;
+double oneSidedFraction(const Stars& stars, int threads, const FractionReport& report) {
+  struct Entries {
+    std::size_t all = 0;
+    std::size_t one_sided = 0;
+
+    Entries& operator+=(const Entries& other) {
+      all += other.all;
+      one_sided += other.one_sided;
+      return *this;
     }
-  return all > 0 ? static_cast<double>(one_sided) / static_cast<double>(all) : 0.0;
+  };
+  const Entries entries = accumulate(
+      stars.size(), threadCount(threads, stars.size()), Entries{},
+      [&](Index i, Entries& sum) {
+        for (const Index j : stars.of(i))
+          sum += Entries{1, stars.of(j).contains(i) ? std::size_t{0} : std::size_t{1}};
+      },
+      report);
+  return entries.all > 0 ? static_cast<double>(entries.one_sided) / static_cast<double>(entries.all)
+                         : 0.0;
 }
 
 }  // namespace spherical_param::internal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "neighbor_search.h"
+#include "progress.h"
 
 #include <cstddef>
 #include <vector>
@@ -51,6 +52,6 @@ struct Stars {
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution);
 
 /// The fraction of the stars' entries that the other star does not have; 0 without any.
-double oneSidedFraction(const Stars& stars);
+double oneSidedFraction(const Stars& stars, int threads = 1, const FractionReport& report = {});
 
 }  // namespace spherical_param::internal
