@@ -235,7 +235,8 @@ Eigen::Vector3d RotationSystem::direction(Index v, Index w) const {
   constexpr double safe = 1e-280;
   const Eigen::Vector3d edge = points_.col(w) - points_.col(v);
   const double squared = edge.squaredNorm();
-  return squared > safe ? Eigen::Vector3d(1.0 / std::sqrt(squared) * edge) : edge.stableNormalized();
+  return squared > safe ? Eigen::Vector3d(1.0 / std::sqrt(squared) * edge)
+                        : edge.stableNormalized();
 }
 
 void RotationSystem::findNormals() {

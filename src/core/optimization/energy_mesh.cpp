@@ -233,12 +233,11 @@ void updateIntersections(const EnergyMesh& mesh, const std::vector<Index>& touch
       return std::binary_search(touched.begin(), touched.end(), t);
     });
   });
-  const auto more = findSelfIntersectionsOf(mesh.points(), mesh.mesh().triangles(), touched,
-                                            {mesh.threads()});
+  const auto more =
+      findSelfIntersectionsOf(mesh.points(), mesh.mesh().triangles(), touched, {mesh.threads()});
   pairs.insert(pairs.end(), more.begin(), more.end());
-  erase_if([&](const auto& pair) {
-    return mesh.facet(pair[0]).is_open || mesh.facet(pair[1]).is_open;
-  });
+  erase_if(
+      [&](const auto& pair) { return mesh.facet(pair[0]).is_open || mesh.facet(pair[1]).is_open; });
   std::sort(pairs.begin(), pairs.end());
 }
 

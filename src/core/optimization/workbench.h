@@ -56,7 +56,7 @@ private:
   static constexpr double kGrace = 0.1;
 
   TimeLeft time_left_;
-  IntersectingPairs known_;  ///< when the mesh was last searched
+  IntersectingPairs known_;     ///< when the mesh was last searched
   std::size_t first_work_ = 0;  ///< before renewWork()
   std::size_t max_work_ = 0;    ///< since then
 };
