@@ -400,7 +400,7 @@ Faces joined(const Positions& points, const Graph& graph, Faces closed) {
 }
 
 /// A region of a closed mesh that grows triangle by triangle, those with short sides first, and
-/// keeps genus 0.
+/// stays a disc.
 class PlanarRegion {
 public:
   PlanarRegion(const Positions& points, const SphereMesh& mesh)
@@ -423,7 +423,7 @@ public:
           add(t);
       }
       for (const Index t : std::exchange(touching, {}))
-        if (!contains(t) && (!touches(t) || isAcrossOneLoop(t)))
+        if (!contains(t) && !touches(t))
           add(t);
     }
   }
@@ -460,25 +460,6 @@ private:
   bool touches(Index t) const {
     const int tip = tipOf(t);
     return tip >= 0 && is_on_[mesh_.vertex(t, tip)] != 0;
-  }
-
-  /// Whether the boundary of the region leads from the side of a triangle to its tip.
-  bool isAcrossOneLoop(Index t) const {
-    const int tip = tipOf(t);
-    Index at = t;
-    int corner = tip;
-    do {
-      // To the next side around the end of this one.
-      corner = (corner + 1) % 3;
-      while (!contains(mesh_.neighbor(at, corner))) {
-        const int opposite = mesh_.oppositeCorner(at, corner);
-        at = mesh_.neighbor(at, corner);
-        corner = (opposite + 1) % 3;
-        if (at == t && (corner + 2) % 3 == tip)
-          return true;
-      }
-    } while (at != t || corner != tip);
-    return false;
   }
 
   const Positions& points_;

@@ -25,8 +25,8 @@ namespace spherical_param::internal {
 std::optional<SphereMesh> meshFaces(const Positions& points, const Graph& graph,
                                     const RotationSystem& rotation);
 
-/// Opens the handles of a mesh of faces: a region of genus 0 grows over it; the triangles that it
-/// cannot take are left out, and the loops filled again.
+/// Opens the handles of a mesh of faces: a disc grows over it; the triangles that it cannot take
+/// are left out, and the loops filled again.
 ///
 /// \return nothing if handles are left.
 std::optional<SphereMesh> withoutHandles(const Positions& points, const Graph& graph,
