@@ -68,6 +68,8 @@ Indexed<char> nearOutliers(const Positions& points, const Neighbors& neighbors, 
                            const Indexed<char>& is_stray, const Execution& execution) {
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "outliers");
+  // Points among more stray ones are not looked at.
+  constexpr std::size_t max_searched = 16 * kFittedNeighbors;
   Indexed<char> marked(stars.size(), 0);
   Indexed<double> spacing(stars.size());
   forEachIndex(stars.size(), threads, report, [&](Index i) {
@@ -76,7 +78,8 @@ Indexed<char> nearOutliers(const Positions& points, const Neighbors& neighbors, 
     spacing[i] = near.empty() ? 0.0 : std::sqrt(near.back().squared_distance);
   });
   std::vector<Index> due = pointsOffPlane(stars, is_stray, threads);
-  for (std::size_t count = kFittedNeighbors; !due.empty() && count < stars.size(); count *= 2) {
+  for (std::size_t count = kFittedNeighbors;
+       !due.empty() && count < std::min(stars.size(), max_searched); count *= 2) {
     const NeighborLists lists = neighbors.search(due, static_cast<int>(count));
     Indexed<char> has_few(due.size(), 0);  // the others in the list are stray
     forEachIndex<QuadricFit>(due.size(), threads, report, [&](QuadricFit& quadric, Index list) {

@@ -138,8 +138,10 @@ void findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t coun
   constexpr double min_width_ratio = 0.01;
   is_line = !(variances[1] > min_width_ratio * variances[2]);
   star.tangent_plane = !is_line && variances[0] <= max_plane_roundness * variances[1];
-  star.height = static_cast<float>(std::abs(axes.col(0).dot(centroid)) /
-                                   std::sqrt(variances[1] / static_cast<double>(count)));
+  constexpr double max_height = 1e9;  // far below the greatest float
+  star.height = static_cast<float>(std::min(
+      std::abs(axes.col(0).dot(centroid)) / std::sqrt(variances[1] / static_cast<double>(count)),
+      max_height));
 }
 
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
