@@ -144,7 +144,7 @@ private:
   /// Whether the faces have handles for sure: they cost less energy than the faces without handles,
   /// and close up, or have few defects and cost far less energy than the sphere.
   bool areHandlesSure() {
-    // Where the faces close up, the true handles of 50 clouds have 1.05 and more, the false one of
+    // Where the faces close up, the true handles of 65 clouds have 1.05 and more, the false one of
     // one cloud 0.998.
     constexpr double min_of_cut = 1.02;
     constexpr double max_defects = 0.03;
