@@ -231,12 +231,7 @@ bool RotationSystem::doCross(Index v, Index w, Index a, Index b) const {
 }
 
 Eigen::Vector3d RotationSystem::direction(Index v, Index w) const {
-  // Below this, squares lose digits, or all of them.
-  constexpr double safe = 1e-280;
-  const Eigen::Vector3d edge = points_.col(w) - points_.col(v);
-  const double squared = edge.squaredNorm();
-  return squared > safe ? Eigen::Vector3d(1.0 / std::sqrt(squared) * edge)
-                        : edge.stableNormalized();
+  return 1.0 / edgeLength(points_, v, w) * (points_.col(w) - points_.col(v));
 }
 
 void RotationSystem::findNormals() {
