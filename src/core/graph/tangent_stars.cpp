@@ -488,25 +488,15 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Execu
 }
 
 double oneSidedFraction(const Stars& stars, int threads, const FractionReport& report) {
-  struct Entries {
-    std::size_t all = 0;
-    std::size_t one_sided = 0;
-
-    Entries& operator+=(const Entries& other) {
-      all += other.all;
-      one_sided += other.one_sided;
-      return *this;
-    }
-  };
-  const Entries entries = accumulate(
-      stars.size(), threadCount(threads, stars.size()), Entries{},
-      [&](Index i, Entries& sum) {
+  // All entries, and the one-sided ones.
+  const Eigen::Array2d sums = accumulate(
+      stars.size(), threadCount(threads, stars.size()), Eigen::Array2d(Eigen::Array2d::Zero()),
+      [&](Index i, Eigen::Array2d& sum) {
         for (const Index j : stars.of(i))
-          sum += Entries{1, stars.of(j).contains(i) ? std::size_t{0} : std::size_t{1}};
+          sum += Eigen::Array2d(1.0, stars.of(j).contains(i) ? 0.0 : 1.0);
       },
       report);
-  return entries.all > 0 ? static_cast<double>(entries.one_sided) / static_cast<double>(entries.all)
-                         : 0.0;
+  return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
 }
 
 }  // namespace spherical_param::internal
