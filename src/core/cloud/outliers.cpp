@@ -62,15 +62,16 @@ std::vector<Index> pointsOffPlane(const Stars& stars, const Indexed<char>& is_st
       });
 }
 
-/// Marks isolated points near a surface: they are far from the quadric through their neighbours,
-/// relative to the spacing there and to how far the neighbours are from it.
-Indexed<char> nearOutliers(const Positions& points, const Neighbors& neighbors, const Stars& stars,
-                           const Indexed<char>& is_stray, const Execution& execution) {
+/// Marks the stray points, and isolated ones near a surface: they are far from the quadric through
+/// their neighbours, relative to the spacing there and to how far the neighbours are from it.
+Indexed<char> withNearOutliers(const Positions& points, const Neighbors& neighbors,
+                               const Stars& stars, const Indexed<char>& is_stray,
+                               const Execution& execution) {
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "outliers");
   // Points among more stray ones are not looked at.
   constexpr std::size_t max_searched = 16 * kFittedNeighbors;
-  Indexed<char> marked(stars.size(), 0);
+  Indexed<char> marked = is_stray;
   Indexed<double> spacing(stars.size());
   forEachIndex(stars.size(), threads, report, [&](Index i) {
     // The fourth is the median of six.
@@ -245,13 +246,8 @@ Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& poin
     marked[each.point] = 1;
   // The others among themselves: those of a net have each other for neighbours, and stray points
   // between two sheets are in the plane of both.
-  if (mode == OutlierMode::Auto) {
-    const Indexed<char> is_off = nearOutliers(points, neighbors, stars, marked, execution);
-    for (const Index i : indicesOf(is_off))
-      if (is_off[i] != 0)
-        marked[i] = 1;
-    return marked;
-  }
+  if (mode == OutlierMode::Auto)
+    return withNearOutliers(points, neighbors, stars, marked, execution);
   Indexed<Index> others;
   for (const Index i : indicesOf(marked))
     if (marked[i] == 0)
