@@ -43,7 +43,7 @@ namespace internal {
 /// Whether the noise of a cloud is such that a mesh through its points folds.
 ///
 /// \param points 3 x n, with their neighbours and stars. Too few points are not noisy.
-/// Cost: that of 400 fits, and of a comparison of the stars.
+/// Cost: that of a comparison of the stars, and of 400 fits where they disagree.
 bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars,
              const Execution& execution);
 

@@ -132,8 +132,7 @@ private:
     return filling / static_cast<double>(faces.slotCount());
   }
 
-  /// Whether the faces close up with hardly a defect, or have handles that cost the sphere far more
-  /// energy.
+  /// Whether the faces close up with hardly a defect, or have handles for sure.
   bool areFacesGood() {
     const bool is_sphere_alone = !removesIntersections(options_) && !mayHaveHandles();
     if (is_sphere_alone || !mayUseFaces() || plan_.openings().isOneSided())

@@ -305,7 +305,7 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   std::optional<FoundView> view = viewOf(nodes, options, info, clock.execution(), known->search);
   if (!view)
     return false;
-  known->search = {};
+  known->search = {};  // frees its tree
   // Points that are too few for a part are one, as they are without a view.
   if (given.parts == PartsMode::AsTopology &&
       inputs.size() < static_cast<std::size_t>(options.min_points))

@@ -17,6 +17,12 @@ namespace {
 
 namespace tuned = optimization_constants;
 
+/// Whether the sampling is even: as the caller knows, or as it is found.
+bool isEven(const Positions& points, const Graph& graph, const OptimizationOptions& options,
+            const Execution& execution) {
+  return options.is_even ? *options.is_even : isEvenlySampled(points, graph, execution.threads);
+}
+
 /// Flips with the energy that suits a sampling.
 ///
 /// \param mu of a sampling that is not even.
@@ -290,11 +296,6 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
   if (is_polished && !found.pairs.empty())
     rollBackPolish(bench, std::move(unpolished), found);
   return found;
-}
-
-bool isEven(const Positions& points, const Graph& graph, const OptimizationOptions& options,
-            const Execution& execution) {
-  return options.is_even ? *options.is_even : isEvenlySampled(points, graph, execution.threads);
 }
 
 /// After work on smoothed points: untangles on the given ones, unless too many triangles intersect
