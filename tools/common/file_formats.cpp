@@ -32,10 +32,9 @@ constexpr std::array foreign_formats = {
                   "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.e57 -SAVE_CLOUDS"},
     ForeignFormat{".ptx", "", "PTX",
                   "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.ptx -SAVE_CLOUDS"},
-    ForeignFormat{".stl", "solid ", "STL, a mesh", "pcl_converter in.stl out.ply"},
     ForeignFormat{".glb", "glTF", "glTF, a mesh", "assimp export in.glb out.ply"},
     ForeignFormat{".gltf", "", "glTF, a mesh", "assimp export in.gltf out.ply"},
-    ForeignFormat{".off", "OFF\n", "OFF, a mesh", "assimp export in.off out.ply"},
+    ForeignFormat{".gii", "", "GIfTI, a mesh", "mris_convert in.gii out.stl"},
     ForeignFormat{".vtk", "# vtk DataFile", "VTK", "pcl_vtk2pcd in.vtk out.pcd"},
     ForeignFormat{".gz", "\x1f\x8b", "compressed by gzip", "gunzip in.ply.gz"},
     ForeignFormat{".zip", "PK\x03\x04", "a ZIP archive", "unzip in.zip"},
@@ -69,6 +68,16 @@ std::string extensionOfContent(const std::string& path) {
   }
   if (begins("ply\n") || begins("ply\r")) {
     return ".ply";
+  }
+  if (begins("solid ")) {
+    return ".stl";
+  }
+  if (lowerCase(content.substr(0, 5)) == "ncols") {
+    return ".agr";
+  }
+  const std::string word = content.substr(0, content.find_first_of(" \r\n"));
+  if (word.size() >= 3 && word.size() < 8 && word.find("OFF") == word.size() - 3) {
+    return ".off";
   }
   if (content.find("FIELDS ") != std::string::npos && content.find("DATA ") != std::string::npos) {
     return ".pcd";

@@ -100,6 +100,53 @@ void takeNormals(Columns& columns, PointData& data) {
 
 constexpr std::string_view around_names = " \t\r\"'/#%!";
 
+/// A name in lower case without its unit; as much of it as matters, which no expression is too long
+/// for.
+std::string plainName(std::string_view name) {
+  constexpr std::size_t longest = 100;
+  return lowerCase(
+      trimmed(name.substr(0, std::min(longest, name.find_first_of("[("))), around_names));
+}
+
+/// The axis of a name that maps and surveys use, as "x" of "Easting", "POINT_X" and "X_UTM"; empty
+/// for others.
+std::string axisOf(std::string_view name) {
+  static const std::regex pattern(
+      "(east(?:ing)?)|(north(?:ing)?)|(elev(?:ation)?|height|alt(?:itude)?)|"
+      "(?:utm|coord|point|pos|position)_?([xyz])|([xyz])_?(?:utm|coord|pos|position)");
+  std::smatch match;
+  const std::string plain = plainName(name);
+  if (!std::regex_match(plain, match, pattern)) {
+    return "";
+  }
+  return match[1].matched   ? "x"
+         : match[2].matched ? "y"
+         : match[3].matched ? "z"
+                            : match[4].str() + match[5].str();
+}
+
+/// The columns by their names and those of maps, if each is the only one of its axis; empty if not.
+std::vector<PointColumn*> columnsOfMap(Columns& columns, const std::vector<std::string>& names) {
+  std::vector<PointColumn*> found(names.size(), nullptr);
+  for (PointColumn& column : columns) {
+    if (plainName(column.name) == "width") {
+      return {};  // that height is no axis
+    }
+    const std::string axis = axisOf(column.name);
+    const auto place =
+        std::find(names.begin(), names.end(), axis.empty() ? commonName(column.name) : axis);
+    if (place == names.end()) {
+      continue;
+    }
+    PointColumn*& of_axis = found[static_cast<std::size_t>(place - names.begin())];
+    if (of_axis != nullptr) {
+      return {};
+    }
+    of_axis = &column;
+  }
+  return std::count(found.begin(), found.end(), nullptr) == 0 ? found : std::vector<PointColumn*>();
+}
+
 }  // namespace
 
 std::string commonName(std::string_view name) {
@@ -116,8 +163,7 @@ std::string commonName(std::string_view name) {
                                                            {"normal_y", "ny"},
                                                            {"normal_z", "nz"},
                                                            {"diffuse_blue", "blue"}};
-  const std::string lower =
-      lowerCase(trimmed(name.substr(0, name.find_first_of("[(")), around_names));
+  const std::string lower = plainName(name);
   static const std::regex numbered("(point|normal).*:([012])");  // "points_m_xyz:0" of ParaView's
   std::smatch match;
   if (std::regex_match(lower, match, numbered)) {
@@ -139,7 +185,7 @@ std::vector<PointColumn*> findColumns(Columns& columns, const std::vector<std::s
       });
     }
     if (column == columns.end()) {
-      return {};
+      return columnsOfMap(columns, names);
     }
     found.push_back(&*column);
   }

@@ -20,7 +20,8 @@ struct PointColumn {
 /// "normal_x", "red" of "R"; names that are not known stay as they are.
 std::string commonName(std::string_view name);
 
-/// The columns of a common name, in the order of the names; empty if one is missing.
+/// The columns of a common name, in the order of the names; x, y and z may also be easting,
+/// northing and elevation. Empty if one is missing.
 std::vector<PointColumn*> findColumns(std::vector<PointColumn>& columns,
                                       const std::vector<std::string>& names);
 

@@ -296,7 +296,7 @@ private:
       }
       ++line_number_;
       split(line, " \t\r", words_);
-    } while (words_.empty());
+    } while (words_.empty() || words_[0][0] == '#');
     if (line.find(',') == std::string_view::npos) {
       return true;
     }

@@ -8,8 +8,9 @@ const std::vector<FormatRow> format_table = {
     {".xyz", readText, writeXyz, nullptr},      {".txt", readText, writeXyz, nullptr},
     {".csv", readText, nullptr, nullptr},       {".asc", readText, nullptr, nullptr},
     {".pts", readText, nullptr, nullptr},       {".xyzn", readText, nullptr, nullptr},
-    {".xyzrgb", readText, nullptr, nullptr},    {".stl", nullptr, nullptr, writeStl, true, false},
-    {".glb", nullptr, nullptr, writeGlb, true}, {".off", nullptr, nullptr, writeOff},
+    {".xyzrgb", readText, nullptr, nullptr},    {".stl", readStl, nullptr, writeStl, true, false},
+    {".glb", nullptr, nullptr, writeGlb, true}, {".off", readOff, nullptr, writeOff},
+    {".agr", readGrid, nullptr, nullptr},
 };
 
 }  // namespace spherical_param::tools

@@ -33,7 +33,7 @@ struct FormatRow {
 extern const std::vector<FormatRow> format_table;
 
 /// Readers throw Failure with the place of what is broken.
-CloudReader readPcd, readPly, readObj, readText;
+CloudReader readPcd, readPly, readObj, readText, readOff, readStl, readGrid;
 MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff, writeGlb;
 
 }  // namespace spherical_param::tools

@@ -13,8 +13,8 @@
 
 namespace spherical_param::tools {
 
-// Headers of PCD and PLY files. They are compared with the size of the file before anything is
-// read: memory is reserved for as many points as they claim.
+// Headers of PCD, PLY, OFF and other files. They are compared with the size of the file before
+// anything is read: memory is reserved for as many points as they claim.
 
 /// No header is longer, except in broken files.
 inline constexpr std::size_t header_limit = std::size_t{1} << 20;

@@ -43,7 +43,7 @@ Entries readEntries(const std::string& path, Lines& lines) {
   if (entries["HEIGHT"].empty()) {
     entries["HEIGHT"] = {"1"};
   }
-  for (const char* name : {"FIELDS", "WIDTH", "DATA"}) {
+  for (const char* name : {"FIELDS", "DATA"}) {
     if (entries[name].empty()) {
       failContent(path, std::string("its header has no ") + name);
     }
@@ -74,10 +74,16 @@ RecordField makeField(const std::string& path, const std::string& name, const st
   return field;
 }
 
-/// All fields of a point, padding included.
+/// All fields of a point, padding included. The last ones may lack a type: only that of colours in
+/// binary is known.
 std::vector<RecordField> makeFields(const std::string& path, Entries& entries) {
-  const std::vector<std::string>& names = entries["FIELDS"];
+  std::vector<std::string> names = entries["FIELDS"];
   const std::vector<std::string>& counts = entries["COUNT"];
+  for (std::size_t f = entries["TYPE"].size(); f < names.size(); ++f) {
+    const bool is_color = names[f] == "rgb" || names[f] == "rgba";
+    entries["TYPE"].emplace_back("U");
+    names[f] = is_color && lowerCase(entries["DATA"][0]) == "binary" ? names[f] : "_";
+  }
   if (entries["SIZE"].size() != names.size() || entries["TYPE"].size() != names.size() ||
       counts.size() != names.size()) {
     failContent(path, "FIELDS, SIZE, TYPE and COUNT of its header differ in length");
@@ -90,12 +96,18 @@ std::vector<RecordField> makeFields(const std::string& path, Entries& entries) {
 }
 
 std::int64_t pointCount(const std::string& path, Entries& entries) {
-  const std::int64_t width = requireCount(path, entries["WIDTH"][0], "columns");
-  const std::int64_t height = requireCount(path, entries["HEIGHT"][0], "rows");
-  if (entries["POINTS"].empty()) {
-    entries["POINTS"] = {std::to_string(width * height)};
+  const auto count = [&](const char* name, const char* what) {
+    return entries[name].empty() ? -1 : requireCount(path, entries[name][0], what);
+  };
+  const std::int64_t given = count("WIDTH", "columns");
+  const std::int64_t height = count("HEIGHT", "rows");
+  const std::int64_t all = count("POINTS", "points");
+  if (all < 0 && given < 0) {
+    failContent(path, "its header has neither WIDTH nor POINTS");
   }
-  const std::int64_t points = requireCount(path, entries["POINTS"][0], "points");
+  const std::int64_t width = given < 0 ? all / std::max<std::int64_t>(height, 1) : given;
+  const std::int64_t points =
+      all < 0 ? requireCount(path, std::to_string(width * height), "points") : all;
   if (points == 0) {
     failContent(path, "it has no points");
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,9 +26,13 @@ struct TextStyle {
 };
 
 /// A line without a comment, which '#' begins, or "//" or '%' before a word; one that is all
-/// comment is empty.
+/// comment, or frames the points, is empty.
 std::string_view withoutComment(std::string_view line) {
   line = trimmed(withoutRemark(line));
+  constexpr std::size_t longest = 5;
+  if (line.size() <= longest && (lowerCase(line) == "begin" || lowerCase(line) == "end")) {
+    return {};
+  }
   // After ';' the first cell may be empty.
   const bool is_empty_cell = line.rfind(';') > 0 && line.find_first_of("; ", 1) != 1;
   if ((line.substr(0, 1) == ";" && !is_empty_cell) || line.substr(0, 4) == "sep=") {
@@ -154,6 +159,53 @@ bool isCount(std::string_view line) {
   return toInteger(line).has_value();
 }
 
+/// What follows the letter of a point, "p x y z"; empty for a line of another letter that such
+/// files have; a line without such a letter as it is.
+std::string_view behindLetter(std::string_view line) {
+  const bool has_letter = line.size() > 1 && (line[1] == ' ' || line[1] == '\t') &&
+                          std::string_view("dgps").find(line[0]) != std::string_view::npos;
+  return !has_letter ? line : line[0] == 'p' ? trimmed(line.substr(2)) : std::string_view();
+}
+
+/// Whether the first line has counts, that of the points first, and the others are numbered from 0
+/// or 1 on, as in the .node files of TetGen.
+bool areNumbered(const Words& lines) {
+  constexpr std::size_t least = 3;
+  bool are_numbered = lines.size() >= least;
+  std::int64_t start = 0;
+  for (std::size_t i = 0; i < lines.size() && are_numbered; ++i) {
+    // Commas are decimal where others separate.
+    const bool has_blanks = lines[1].find_first_of(" \t;") != std::string_view::npos;
+    const Words words = split(lines[i], has_blanks ? " \t\r;" : ",");
+    const std::int64_t first = words.empty() ? -1 : toInteger(words.front()).value_or(-1);
+    start = i == 1 && first == 1 ? 1 : start;
+    are_numbered = i == 0 ? first > 0 && std::all_of(words.begin(), words.end(), isCount)
+                          : words.size() > 3 && first == start + static_cast<std::int64_t>(i) - 1;
+  }
+  return are_numbered;
+}
+
+/// \throw Failure if columns are of latitude and longitude instead of x, y and z.
+void requireLengths(const std::string& path, const std::vector<std::string>& names) {
+  const auto is_degree = [](const std::string& name) {
+    static const std::set<std::string> degrees = {"latitude", "longitude", "lat",
+                                                  "lon",      "lng",       "long"};
+    return degrees.count(commonName(name)) > 0;
+  };
+  if (std::count_if(names.begin(), names.end(), is_degree) >= 2 && !areCoordinatesNamed(names)) {
+    failReading(path, "its latitude and longitude are degrees, which are not lengths",
+                "project them first, e.g. gdaltransform -s_srs EPSG:4326 -t_srs EPSG:32632");
+  }
+}
+
+/// Takes the last name off if it is that of a list: rows may be of any length then.
+bool takeList(std::vector<std::string>& names) {
+  const bool is_list = names.size() > 3 && (names.back().find("[]") != std::string::npos ||
+                                            names.back().find("...") != std::string::npos);
+  names.resize(names.size() - (is_list ? 1 : 0));
+  return is_list;
+}
+
 /// How lines of data are separated. \param names of the columns, if they are known.
 TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names) {
   const auto all = [&](const auto& is_so) {
@@ -205,6 +257,9 @@ struct TextLayout {
   bool are_given = false;          ///< by the caller
   bool has_heading = false;        ///< before the points
   bool has_counts = false;         ///< of points, before them
+  bool is_numbered = false;        ///< \see areNumbered
+  bool has_letters = false;        ///< points begin with p, and no other lines
+  bool has_lists = false;          ///< rows go on behind the columns
 };
 
 TextLayout layoutOf(const std::string& path, const std::vector<std::string>& given) {
@@ -213,14 +268,32 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
   layout.names = given;
   layout.are_given = !given.empty();
   Words lines = beginning.lines;
+  layout.has_letters =
+      !layout.are_given && std::all_of(lines.begin(), lines.end(), [](std::string_view line) {
+        return behindLetter(line).size() < line.size();
+      });
+  if (layout.has_letters) {
+    std::transform(lines.begin(), lines.end(), lines.begin(), behindLetter);
+    lines.erase(std::remove(lines.begin(), lines.end(), ""), lines.end());
+  }
+  layout.is_numbered = areNumbered(lines);
+  if (layout.is_numbered) {
+    const Words counts = split(lines.front(), " \t\r,;");
+    if (!layout.are_given && counts.size() > 1 && counts[1] == "2") {
+      failReading(path, "its points have two dimensions, as its first line says", name_columns);
+    }
+    lines.erase(lines.begin());
+  }
   while (!lines.empty() && ((!layout.has_counts && isCount(lines.front())) ||
                             (!layout.has_heading && isHeading(lines.front())))) {
     (isCount(lines.front()) ? layout.has_counts : layout.has_heading) = true;
     if (!isCount(lines.front()) && !layout.are_given) {
       layout.names = namesOf(lines.front());
+      layout.has_lists = takeList(layout.names);
     }
     lines.erase(lines.begin());
   }
+  requireLengths(path, layout.names);
   if (layout.has_heading && !areCoordinatesNamed(layout.names)) {
     failReading(path, "line 1 neither begins with three numbers nor names x, y and z",
                 name_columns);
@@ -234,11 +307,22 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
   }
   for (auto comment = beginning.comments.rbegin();
        layout.names.empty() && comment != beginning.comments.rend(); ++comment) {
-    const std::vector<std::string> names = namesOf(*comment);
-    if (areCoordinatesNamed(names)) {
-      Words cells;
-      splitCells(lines.front(), styleOf(path, lines, names.size()), names.size(), cells);
-      layout.names = names.size() == cells.size() ? names : std::vector<std::string>();
+    std::vector<std::string> names = namesOf(*comment);
+    const bool has_lists = takeList(names);
+    if (names.size() < 3) {
+      continue;
+    }
+    Words cells;
+    splitCells(lines.front(), styleOf(path, lines, names.size()), names.size(), cells);
+    if (names.size() == cells.size() || (has_lists && names.size() < cells.size())) {
+      requireLengths(path, names);
+      // "North, east, elevation" may be prose.
+      const bool has_x = std::any_of(names.begin(), names.end(),
+                                     [](const auto& name) { return commonName(name) == "x"; });
+      if (has_x && areCoordinatesNamed(names)) {
+        layout.names = names;
+        layout.has_lists = has_lists;
+      }
     }
   }
   layout.style = styleOf(path, lines, layout.names.size());
@@ -249,6 +333,9 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     layout.names = {"x", "y", "z", "nx", "ny", "nz"};
   } else if (layout.names.empty() && cells.size() == 6 && extension == ".xyzrgb") {
     layout.names = {"x", "y", "z", "red", "green", "blue"};
+  } else if (layout.names.empty() && layout.is_numbered) {
+    layout.names = {"-", "x", "y", "z"};
+    layout.names.resize(std::max(cells.size(), layout.names.size()), "-");
   }
   return layout;
 }
@@ -268,7 +355,8 @@ public:
       begin();
     }
     const std::size_t count = columns_.size();
-    if (cells_.size() < count || (cells_.size() > count && !layout_.are_given)) {
+    if (cells_.size() < count ||
+        (cells_.size() > count && !layout_.are_given && !layout_.has_lists)) {
       fail(number, counted(cells_.size(), "column") + " instead of " + std::to_string(count));
     }
     for (std::size_t c = 0; c < count; ++c) {
@@ -297,11 +385,17 @@ private:
     const std::size_t lines = countLines(path_, "");
     is_left_out_.resize(columns_.size(), false);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
+      columns_[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
+    }
+    const std::vector<PointColumn*> coordinates = findColumns(columns_, {"x", "y", "z"});
+    for (std::size_t d = 0; d < coordinates.size(); ++d) {
+      coordinates[d]->name = "xyz"[d];
+    }
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
       PointColumn& column = columns_[c];
-      column.name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
       const bool is_word = c < cells_.size() && !cells_[c].empty() && !toValue(cells_[c]);
-      const std::string common = commonName(column.name);
-      const bool is_coordinate = common == "x" || common == "y" || common == "z";
+      const bool is_coordinate =
+          std::find(coordinates.begin(), coordinates.end(), &column) != coordinates.end();
       is_left_out_[c] = column.name == "-" || (is_word && !is_coordinate);
       column.values.reserve(is_left_out_[c] ? 0 : lines);
     }
@@ -370,7 +464,8 @@ bool isCounter(const std::vector<double>& values) {
          std::adjacent_find(values.begin(), values.end(), is_other) == values.end();
 }
 
-std::string describe(const std::vector<PointColumn>& columns, const TextStyle& style) {
+std::string describe(const std::vector<PointColumn>& columns, const TextLayout& layout) {
+  const TextStyle& style = layout.style;
   std::string names;
   for (const PointColumn& column : columns) {
     names += " " + (column.name.empty() ? "-" : commonName(column.name));
@@ -380,35 +475,42 @@ std::string describe(const std::vector<PointColumn>& columns, const TextStyle& s
          (c == ','   ? "commas"
           : c == ';' ? "semicolons"
                      : "blanks") +
-         (style.has_decimal_commas ? ", with decimal commas" : "");
+         (style.has_decimal_commas ? ", with decimal commas" : "") +
+         (layout.has_lists ? "; the rest of each row is not read" : "") +
+         (layout.has_letters ? "; lines without p are not read" : "");
 }
 
 }  // namespace
 
 /// Plain text: a line a point, with the columns that a heading, a comment before the points, or the
 /// caller names; else x y z, and what nameFurther() finds. Blanks, tabs, commas or semicolons
-/// separate; decimal commas are seen. The first line may be the number of points.
+/// separate; decimal commas are seen. The first line may be the number of points; if it is, and the
+/// first column counts them, that is left out. Of lines that all begin with d, g, p or s, those
+/// with p are points.
 PointData readText(const std::string& path, const std::vector<std::string>& given,
                    const FileProgress& progress) {
   const TextLayout layout = layoutOf(path, given);
   TextColumns table(path, layout);
   double announced = 0.0;
   double count = 0.0;
-  bool is_heading = layout.has_heading;
+  bool is_first = layout.has_heading || layout.is_numbered;  // a heading, or counts
   forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
     line = withoutComment(line);
+    line = layout.has_letters ? behindLetter(line) : line;
     if (line.empty()) {
       return;
     }
-    if (layout.has_counts && isCount(line)) {
-      announced += static_cast<double>(*toInteger(line));
-    } else if (!std::exchange(is_heading, false)) {
+    if ((layout.has_counts && isCount(line)) || (layout.is_numbered && is_first)) {
+      announced += static_cast<double>(*toInteger(split(line, " \t\r,;").front()));
+      is_first = is_first && !layout.is_numbered;
+    } else if (!std::exchange(is_first, false)) {
       table.add(number, line);
       count += 1.0;
     }
   });
-  if (count < announced) {
-    failContent(path, "it has fewer points than its first line says");
+  if (count < announced || (layout.is_numbered && count > announced)) {
+    failContent(path, std::string("it has ") + (count < announced ? "fewer" : "more") +
+                          " points than its first line says");
   }
   std::vector<PointColumn> columns = std::move(table.columns());
   if (layout.names.empty()) {
@@ -421,7 +523,7 @@ PointData readText(const std::string& path, const std::vector<std::string>& give
   for (PointColumn& column : columns) {
     column.name = column.values.empty() ? "" : column.name;
   }
-  const std::string contents = describe(columns, layout.style);
+  const std::string contents = describe(columns, layout);
   PointData points = toPoints(std::move(columns));
   points.contents = contents;
   return points;

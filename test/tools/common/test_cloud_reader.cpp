@@ -302,6 +302,7 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
   };
   const std::string bytes24(24, '\1');
   const std::string points = "1 2 3\n4 5 6\n7 8 9\n1 0 1\n";
+  const std::string grid = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
   const std::vector<Case> cases = {
       {"a.ply", "", "is empty"},
       {"a.pcd", std::string(5000, '\0'), "unknown entry"},
@@ -349,6 +350,34 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.pts", "3\n0 0 0\n1 2 3\n", "fewer points than its first line"},
       {"a.pcd", xyzPcd("1", "ascii\n1,5 2,5\n"), "no number for 'x'"},
       {"a.txt", "# nothing\n# here\n", "no points"},
+      {"a.pcd", "FIELDS x y z\nDATA ascii\n1 2 3\n", "neither WIDTH nor POINTS"},
+      {"a.csv", "lat,lon,altitude\n48,8,300\n", "latitude and longitude are degrees"},
+      {"a.txt", "# Longitude Latitude h\n8 48 300\n", "latitude and longitude are degrees"},
+      {"a.txt", "point" + std::string(60000, 'x') + "\n1 2 3\n", "line 1"},
+      {"a.node", "2 2 1 0\n1 5 6 7\n2 8 9 7\n", "two dimensions"},
+      {"a.node", "2 3\n0 1 2 3\n1 4 x y,\n", "1 column instead of 4"},
+      {"a.node", "3 3 0 0\n1 5 6 7\n2 8 9 7\n", "fewer points than its first line"},
+      {"a.node", "1 3 0 0\n1 5 6 7\n2 8 9 7\n", "more points than its first line"},
+      {"a.off", "4OFF\n1 0 0\n1 2 3 1\n", "does not begin as"},
+      {"a.off", "OFF BINARY\n1 0 0\n", "does not begin as"},
+      {"a.off", "OFF\n1000000000 0 0\n1 2 3\n", "shorter than its header"},
+      {"a.off", "OFF\n0 0 0\n", "no points"},
+      {"a.stl", std::string(80, ' ') + "\xff\xff\xff\xff", "shorter than its header"},
+      {"a.stl", "solid\nvertex 1 2\n", "line 2 has no three numbers"},
+      {"a.stl", "solid\nendsolid\n", "no points"},
+      {"a.stl", "solid\nvertex 1 2 3\nvertex 2 3 4\n", "not complete"},
+      {"a.off", "OFF 4 2 0\n1 2 3 4 5 6\n7 8 9 1 2 4\n3 0 1 2\n3 1 2 3\n", "fewer lines"},
+      {"a.csv", "x,y,width,height\n1,2,3,4\n", "nor names x, y and z"},
+      {"a.csv", "x,y,pos_x,pos_y,pos_z\n1,2,3,4,5\n", "nor names x, y and z"},
+      {"a.agr", "ncols 2\nnrows 1\nxllcorner 8\nyllcorner 48\ncellsize 1e-3\n1 400", "degrees"},
+      {"a.agr", grid + "cellsize -1\n1 2\n3 4", "no size"},
+      {"a.agr", grid, "no points"},
+      {"a.agr", grid + "1 2\n3", "fewer elevations"},
+      {"a.agr", grid + "1 2\n3 4 5", "line 7 has more elevations"},
+      {"a.agr", grid + "1 x\n3 4", "no number, but 'x'"},
+      {"a.agr", grid + "-9999 -9999 -9999 nan", "no points"},
+      {"a.agr", grid + "nrows 99999\n1 2\n3 4", "shorter than its header"},
+      {"a.agr", "ncols 2\nnrows 2\n1 2\n3 4", "no cellsize"},
   };
   for (const Case& test : cases)
     expectRefused(test.name, test.content, test.cause);

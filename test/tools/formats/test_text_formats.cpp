@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,6 +30,18 @@ struct Case {
 };
 
 const std::string byte_order_mark = "\xef\xbb\xbf";
+
+template <typename... Values>
+std::string bytes(Values... values) {
+  std::string text;
+  (text.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  return text;
+}
+
+std::string binaryStl() {
+  return "solid" + std::string(75, ' ') + bytes(std::uint32_t{1}) +
+         bytes(0.0F, 0.0F, 1.0F, 1.0F, 2.0F, 3.0F, 4.5F, -5.0F, 6.0F, 1.0F, 2.0F, 3.0F) + "..";
+}
 
 /// Each holds the points (1, 2, 3) and (4.5, -5, 6), with normals x and z and colours red and blue.
 const std::vector<Case> cases = {
@@ -81,6 +94,29 @@ const std::vector<Case> cases = {
      "FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\n4.5 -5 6\n"},
     {"PcdWithCommas", "pcd", "FIELDS x, y, z\nWIDTH 2\nDATA ascii\n1,2,3\n4.5, -5, 6\n"},
     {"PcdWithDecimalCommas", "pcd", "FIELDS x y z\nWIDTH 2\nDATA ascii\n1,0 2,0 3,0\n4,5 -5,0 6\n"},
+    {"PcdWithoutWidthAndATypeOfColour", "pcd",
+     "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F\nHEIGHT 1\nPOINTS 2\nDATA binary\n" +
+         bytes(1.0F, 2.0F, 3.0F, 0xff0000U, 4.5F, -5.0F, 6.0F, 0xffU),
+     "c"},
+    {"PcdWithAFieldOfUnknownType", "pcd",
+     "FIELDS x y z a\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3 9\n4.5 -5 6 9\n"},
+    {"NodesOfTetGen", "node", "# a\n2 3 1 0\n0 1 2 3 7\n1 4.5 -5 6 7\n# b\n"},
+    {"NumberedFromOneUnderTheirNumber", "csv", "2\n1,1,2,3\n2,4.5,-5,6\n"},
+    {"BetweenBeginAndEnd", "pts", "BEGIN\n1 2 3\n4.5 -5 6\nEND\n"},
+    {"LettersBeforePoints", "pts", "# a\nd 1 1 1\np 1 2 3\ns 1\np\t4.5 -5 6\n"},
+    {"NamesOfMaps", "csv", "Northing,Easting,Lat,Elevation [m]\n2,1,50,3\n-5,4.5,50,6\n"},
+    {"NamesOfCoordinates", "txt", "Point_Y X_UTM z speed\n2 1 3 9\n-5 4.5 6 9\n"},
+    {"RowsThatGoOn", "txt", "#  ID, X, Y, Z, TRACK[] as (A, B)\n7 1 2 3 1 4\n5 4.5 -5 6 1 4 2 8\n"},
+    {"Off", "off", "# a\nOFF 2 1 0\n\n1 2 3\n# b\n4.5 -5 6\n2 0 1\n"},
+    {"OffOfModelNet", "off", "OFF2 0 0\n1 2 3\n4.5 -5 6\n"},
+    {"OffWithNormalsAndColoursOfUnknownExtension", "dat",
+     "CNOFF\n2 0 0\n1 2 3 1 0 0 255 0 0 255\n4.5 -5 6 0 0 1 0 0 255 255\n", "nc"},
+    {"StlAsText", "stl",
+     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nVERTEX 4.5 -5 6\nvertex 1 2 3\n"},
+    {"StlBinary", "stl", binaryStl()},
+    {"GridOfEsri", "asc",
+     "ncols 2\nNROWS 2\nxllcorner -0.75\nyllcenter -5\ndx 3.5\ndy 7\nnodata_value -1\n3 -1 "
+     "-1\n6\n"},
     {"ColumnsOfSomethingElse", "xyz", "1 2 3 0.5 7 8\n4.5 -5 6 1 2 3\n"},
     {"ObjWithNormalsByFaces", "obj",
      "# test\no object\nv 1 2 3 1 0 0\nv 4.5 -5 6 0 0 1\nvn 0 0 1\nvn 1 0 0\n"
