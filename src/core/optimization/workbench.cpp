@@ -14,7 +14,8 @@ Workbench::Workbench(const Positions& points, SphereMesh start, const Graph& gra
       openings(options.openings != nullptr ? std::optional(*options.openings) : std::nullopt),
       mesh(points, std::move(start), graph, execution.threads, openings ? &*openings : nullptr,
            report),
-      flips(mesh), ruins(mesh, flips, options.seed), local(mesh), time_left_(execution.time_limit) {
+      flips(mesh), ruins(mesh, flips, options.seed), local(mesh),
+      has_no_time_(execution.time_limit == 0.0), time_left_(execution.time_limit) {
   namespace tuned = optimization_constants;
   const auto of_part =
       static_cast<std::size_t>(options.share * static_cast<double>(tuned::kMaxWork));

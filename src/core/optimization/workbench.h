@@ -39,7 +39,7 @@ public:
   /// Notes in the log that the time is over.
   bool isOutOfTime();
   /// Whether even the first flips have to end.
-  bool isOverdue() const { return time_left_(-kGrace) == 0.0; }
+  bool isOverdue() const { return !has_no_time_ && time_left_(-kGrace) == 0.0; }
   /// Whether time is left for repairs, and some of a fraction of their work.
   bool mayRepair(double fraction = 1.0);
   /// Allows as much work again as at the beginning.
@@ -55,6 +55,7 @@ private:
   /// Small clouds have their first flips whatever the limit [s].
   static constexpr double kGrace = 0.1;
 
+  bool has_no_time_;  ///< even before the first flips, which all are made then, on any machine
   TimeLeft time_left_;
   IntersectingPairs known_;     ///< when the mesh was last searched
   std::size_t first_work_ = 0;  ///< before renewWork()

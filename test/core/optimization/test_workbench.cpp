@@ -3,6 +3,9 @@
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
 
+#include <chrono>
+#include <thread>
+
 namespace spherical_param::test {
 namespace {
 
@@ -27,6 +30,13 @@ TEST(Workbench, RepairsUntilItsWorkIsDoneOrItsTimeIsOver) {
   Workbench late(of.points, SphereMesh(of.triangles, 300), of.graph, {}, hasty);
   EXPECT_FALSE(late.tryPart({0}, 12, [](double) { return true; }));
   EXPECT_TRUE(late.log.is_out_of_time);
+
+  // Without any time the first flips end by themselves: the mesh is the same on any machine.
+  hasty.time_limit = 1e-9;
+  Workbench later(of.points, SphereMesh(of.triangles, 300), of.graph, {}, hasty);
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  EXPECT_FALSE(late.isOverdue());
+  EXPECT_TRUE(later.isOverdue());
 }
 
 }  // namespace
