@@ -85,7 +85,7 @@ class Report(ToolTest):
         holes = page.integers["triangles"][page.integers["suspicious"][:, 0] & 2 != 0]
         self.assertGreater(len(holes), 10)
         self.assertGreater(page.arrays["positions"][holes][:, :, 2].min(), 0)  # at the top
-        self.assertFalse({"cloud", "colors", "outliers"} & set(page.integers))
+        self.assertFalse({"cloud", "colors", "left_out"} & set(page.integers))
         (length, x, height), (to, to_x, to_height) = in_plane(points, triangles), in_plane(sphere, triangles)
         a, b, d = to / length, (to_x - to / length * x) / height, to_height / height
         greater = (np.hypot(a + d, b) + np.hypot(a - d, b)) / 2
@@ -165,8 +165,8 @@ class Report(ToolTest):
         mesh = page.arrays["positions"]
         high = mesh.max(axis=0) + np.linalg.norm(np.ptp(mesh, axis=0)) / 2
         self.assertLess(high[0], 3)
-        self.assertEqual(page.data["outliers"], 6)
-        self.assertLess(np.abs(page.arrays["outliers"][:, 0] - np.minimum([p[0] for p in far], high[0])).max(), 1e-4)
+        self.assertEqual(page.data["left_out"], 6)
+        self.assertLess(np.abs(page.arrays["left_out"][:, 0] - np.minimum([p[0] for p in far], high[0])).max(), 1e-4)
 
     def test_arrays_are_the_same_for_any_number_of_threads(self):
         first, *others = [self.page("animal", 2000, *SPHERE, "-smoothing", 2, "-threads", threads).texts

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <utility>
@@ -31,8 +32,8 @@ constexpr int max_history_frames = 40;
 constexpr std::size_t vertices_for_history = 23;
 constexpr std::size_t min_history_vertices = 1000;
 
-/// Outliers that are shown at most.
-constexpr std::size_t max_outliers = 75000;
+/// Points left out that are shown at most.
+constexpr std::size_t max_left_out = 75000;
 
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
@@ -184,7 +185,7 @@ Json sphereTurn(const ReportMesh& mesh) {
   return std::vector<double>(turn.data(), turn.data() + turn.size());
 }
 
-/// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
+/// What the cloud has beside the mesh: colours, the points before smoothing, those left out.
 void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh& mesh,
               Arrays& arrays) {
   if (!cloud.data->colors.empty()) {
@@ -199,17 +200,23 @@ void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh
     const Positions points = positionsOf(*cloud.data)(Eigen::all, mesh.inputs);
     arrays.addPoints("cloud", points, boxOf(points));
   }
-  const std::vector<Index>& left_out = cloud.result.left_out.outliers;
+  const LeftOut& all = cloud.result.left_out;
+  std::vector<Index> left_out;
+  for (const auto* reason : {&all.unused, &all.outliers, &all.other_parts, &all.unmeshed}) {
+    std::copy_if(reason->begin(), reason->end(), std::back_inserter(left_out), [&](Index point) {
+      return cloud.data->position(static_cast<std::size_t>(point)).allFinite();
+    });
+  }
   if (!left_out.empty()) {
-    std::vector<Index> shown(std::min(left_out.size(), max_outliers));
+    std::vector<Index> shown(std::min(left_out.size(), max_left_out));
     for (std::size_t i = 0; i < shown.size(); ++i) {
       shown[i] = left_out[i * left_out.size() / shown.size()];
     }
-    const Positions outliers = positionsOf(*cloud.data)(Eigen::all, shown);
+    const Positions points = positionsOf(*cloud.data)(Eigen::all, shown);
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::AlignedBox3d box = boxOf(mesh.positions);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
-    arrays.addPoints("outliers", outliers, {box.min() - margin, box.max() + margin});
+    arrays.addPoints("left_out", points, {box.min() - margin, box.max() + margin});
   }
 }
 
@@ -347,7 +354,8 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
     const Eigen::Vector3d& sensor = cloud.result.view->place;
     json["view"] = std::vector<double>(sensor.begin(), sensor.end());
   }
-  json["outliers"] = cloud.result.left_out.outliers.size();
+  const LeftOut& left_out = cloud.result.left_out;
+  json["left_out"] = left_out.count() - left_out.not_finite.size();
   json["sphere_turn"] = sphereTurn(mesh);
   json["frames"] = surfaces.size() == 1 ? addHistory(*surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();

@@ -1,6 +1,6 @@
 // Reads the data, and puts the page together: first words, which need no WebGL, then the views.
 
-const outlier_color = '#e14614';
+const left_out_color = '#e14614';
 const flag_kinds = [
   { bit: 1, name: 'Self-intersection', color: '#d53c00' },
   { bit: 2, name: 'Filled hole', color: '#006ebe' },
@@ -246,9 +246,9 @@ function showViews(data, arrays, context) {
   byId('reset').addEventListener('click', () => views.reset());
   views.onMark = (vertex) => { byId('readout').textContent = describe(vertex, modes, arrays); };
   views.onMark(null);
-  if (data.outliers > 0) {
-    byId('cloud-note').replaceChildren(make('span', { class: 'swatch', style: { background: outlier_color } }),
-      `${counted(data.outliers, 'stray point')} left out`);
+  if (data.left_out > 0) {
+    byId('cloud-note').replaceChildren(make('span', { class: 'swatch', style: { background: left_out_color } }),
+      `${counted(data.left_out, 'point')} left out`);
   }
 
   let seek = () => {};

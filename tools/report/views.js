@@ -125,9 +125,9 @@ class Views extends Shape {
     // Discs that just cover a square grid of points.
     this.addPoints('cloud', { position: cloud, normal: this.normal, color: this.color },
       { size: spacing / this.radius, pixels: [1, 12], lit: true });
-    if (arrays.outliers) {
-      const points = rowsOf(this.normalized(arrays.outliers));
-      this.addPoints('cloud', { position: points, normal: points }, { pixels: [6, 6], color: outlier_color });
+    if (arrays.left_out) {
+      const points = rowsOf(this.normalized(arrays.left_out));
+      this.addPoints('cloud', { position: points, normal: points }, { pixels: [6, 6], color: left_out_color });
     }
     this.marks = Object.fromEntries(this.names.map((name) => [name, this.addPoints(name,
       { position: rowsOf(new Float32Array(3)), normal: rowsOf(new Float32Array(3)) },
