@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string_view>
 
 namespace spherical_param {
 
@@ -20,6 +21,11 @@ struct Progress {
   double fraction;
   std::size_t part = 0;   ///< the part at hand, from 0
   std::size_t parts = 1;  ///< number of parts that are meshed
+  /// Estimate of the fraction of all the work of reconstruct(), in [0, 1]; it never falls.
+  double done = 0.0;
+  /// What the part is, if it is no plain surface, and what is done with it: said once, and empty
+  /// otherwise. Valid during the call.
+  std::string_view remark = {};
 };
 
 /// How a computation is run. Only the time limit affects the result.

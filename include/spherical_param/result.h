@@ -32,6 +32,10 @@ struct Finding {
   bool is_fault = false;   ///< a self-intersection, fold, filled opening, cut handle or joined part
   /// The option of another finding of the same surface deals with this fault as well.
   bool is_consequence = false;
+  std::string kind = {};  ///< the same for all findings of a kind, e.g. "openings"
+  double size = 0.0;      ///< of what was found; the largest speaks for several of a kind
+  /// Of several surfaces: those of which one of the kind is found, numbered from 1, ascending.
+  std::vector<Index> parts = {};
 };
 
 /// Whether findings include a fault.
@@ -95,6 +99,8 @@ struct PartBridge {
 struct SurfaceDiagnosis {
   /// Handles that the cloud certainly has and the mesh has not: it is cut there.
   std::size_t cut_handles = 0;
+  /// Handles that the cloud may have, and the mesh has not.
+  std::size_t possible_handles = 0;
   std::vector<PartBridge> bridges;  ///< in descending number of points
   std::size_t joined_parts = 0;     ///< that the bridges join; they may form cycles
   bool is_one_sided = false;        ///< like a Moebius strip or a Klein bottle; the mesh is torn
@@ -330,6 +336,8 @@ struct LeftOut {
   std::vector<Index> other_parts;  ///< of parts that were not meshed, or of no part
   std::vector<Index> unmeshed;     ///< of meshed parts: triangles through them would intersect
 
+  /// Number of all of them. \return the number
+  std::size_t count() const;
   /// In words. \return e.g. "2 points that are not finite, 3 stray points"; empty if nothing was
   /// left out
   std::string text() const;

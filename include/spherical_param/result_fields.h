@@ -143,6 +143,9 @@ constexpr ResultField visitFields(const Finding*, const Visit& visit) {
         &Finding::is_fault);
   visit({"is_consequence", "the option of another finding deals with this fault, too"},
         &Finding::is_consequence);
+  visit({"kind", "the same for all findings of a kind, e.g. 'openings'"}, &Finding::kind);
+  visit({"size", "of what was found, e.g. its points; 0: it has none"}, &Finding::size);
+  visit({"parts", "of several surfaces: those that have it, numbered from 1"}, &Finding::parts);
   return {"Finding", "A remark on a mesh, and the option that helps."};
 }
 
@@ -185,6 +188,8 @@ template <typename Visit>
 constexpr ResultField visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
   visit({"cut_handles", "that the cloud certainly has, and the mesh has not"}, &Of::cut_handles);
+  visit({"possible_handles", "that the cloud may have, and the mesh has not"},
+        &Of::possible_handles);
   visit({"is_one_sided", "like a Moebius strip or a Klein bottle"}, &Of::is_one_sided);
   visit({"is_on_lines", "the points lie along lines"}, &Of::is_on_lines);
   visit({"fills_volume", "the points fill a volume"}, &Of::fills_volume);

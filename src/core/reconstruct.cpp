@@ -24,9 +24,11 @@
 #include "view_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -146,6 +148,23 @@ bool areRows(const Positions& points) {
   return !coarseStepsOffGrid(points, min_spacings).isZero(0.0);
 }
 
+/// Says what a part is that is no plain surface, and what is done with it.
+void remarkOn(PointSpread spread, bool are_rows, bool is_on_lines, const Options& options,
+              StageClock& clock) {
+  const char* const what = spread == PointSpread::Volume   ? "a volume, without a surface"
+                           : spread == PointSpread::Layers ? "layers of voxels, without a surface"
+                           : spread == PointSpread::Curves ? "curves, without a surface"
+                           : are_rows ? "rows of points: single precision lost digits"
+                                      : nullptr;
+  if (what != nullptr)
+    clock.remark(std::string(what) +
+                 (keepsCertainOnly(options)
+                      ? "; triangles that are certain are kept, if they are enough"
+                      : "; its triangles will intersect"));
+  else if (is_on_lines)
+    clock.remark("lines of points; the surface between them is a guess");
+}
+
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
 Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
@@ -171,7 +190,10 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
       continue;
     // Where there is no surface, nothing makes a good mesh: minutes would be lost.
     const PointSpread spread = spreadOf(nodes.points);
-    const bool is_surface = spread == PointSpread::Surface && !areRows(nodes.points);
+    const bool are_rows = areRows(nodes.points);
+    const bool is_on_lines = areOnLines(nodes.points, graph.graph);
+    remarkOn(spread, are_rows, is_on_lines, options, clock);
+    const bool is_surface = spread == PointSpread::Surface && !are_rows;
     if (!is_surface) {
       plan.setNoSurface();
       clock.endPart();
@@ -189,6 +211,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     diagnosis.fills_volume = spread == PointSpread::Volume;
     diagnosis.is_layered = spread == PointSpread::Layers;
     diagnosis.is_on_curves = spread == PointSpread::Curves;
+    diagnosis.is_on_lines = is_on_lines;
     diagnosis.is_scattered = is_scattered && surface.is_noisy;
     surface.is_out_of_time = surface.is_out_of_time && (is_surface || options.time_limit);
     toInput(nodes, surface);
@@ -238,6 +261,8 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
   const bool is_consolidated = options.consolidation == ConsolidationMode::Auto ||
                                (options.consolidation == ConsolidationMode::AsTopology &&
                                 isNoisySurface(selection, part, clock));
+  if (is_consolidated && options.consolidation == ConsolidationMode::AsTopology)
+    clock.remark("noisy; points move to the surface that they sample, and merge");
   auto* const mesh = is_consolidated ? meshConsolidated : meshAsIs;
   Surface surface = mesh(selection, part, options, clock);
   if (!isAsPromised(surface))
@@ -289,6 +314,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     left += part.size();
   const auto all = static_cast<double>(left);
   std::exception_ptr first_error;
+  std::map<std::string, std::array<std::size_t, 2>> failures;  // parts and points of each reason
   std::vector<Index> failed;  // points of parts that cannot be meshed
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
@@ -298,7 +324,9 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
       if (!first_error)
         first_error = std::current_exception();
       failed.insert(failed.end(), parts[part].begin(), parts[part].end());
-      result.failures.push_back(failureOf(1, parts[part].size(), error.what()));
+      auto& [count_of, points_of] = failures[error.what()];
+      ++count_of;
+      points_of += parts[part].size();
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
@@ -310,6 +338,8 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
+  for (const auto& [error, counts] : failures)
+    result.failures.push_back(failureOf(counts[0], counts[1], error));
   if (removesIntersections(options))
     leaveOutUnusable(result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;

@@ -324,6 +324,6 @@ class Parts(shapes.InFolder):
         finding = next(finding for finding in mesh.findings if finding.option == "topology")
         self.assertEqual(str(finding), '2 separate parts (100 and 400 points): try topology="scan"')
         for value, text in (("1e-8", "1e-8"), ("5", "5"), ("auto", '"auto"')):
-            finding = sp.Finding("a text", "option", value, False, False)
+            finding = sp.Finding("a text", "option", value, False, False, "kind", 0.0, ())
             self.assertEqual(str(finding), f"a text: try option={text}")
-        self.assertEqual(str(sp.Finding("a text", "", "", False, False)), "a text")
+        self.assertEqual(str(sp.Finding("a text", "", "", False, False, "kind", 0.0, ())), "a text")

@@ -54,6 +54,9 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   std::size_t part = 0;  // from 1
   // Each stage begins when the one before ends.
   const auto show = [&](const Progress& progress) {
+    if (!progress.remark.empty()) {
+      console.remark(std::string(progress.remark));
+    }
     const bool is_new_part = progress.parts > 1 && part != progress.part + 1;
     if (is_new_part || stage != progress.stage) {
       if (!stage.empty()) {
@@ -61,12 +64,12 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
       }
       if (is_new_part) {
         part = progress.part + 1;
-        console.heading("\npart " + std::to_string(part) + " of " + std::to_string(progress.parts));
+        console.beginPart("part " + std::to_string(part) + " of " + std::to_string(progress.parts));
       }
       stage = progress.stage;
       console.begin(stage);
     }
-    console.update(progress.fraction);
+    console.update(progress.fraction, progress.done);
     return true;
   };
   Options options = settings.options;

@@ -75,8 +75,22 @@ void Console::begin(const std::string& stage) {
   update(0.0);
 }
 
-void Console::update(double fraction) {
+void Console::beginPart(const std::string& part) {
+  heading("\n" + part);
+  part_ = part + ", ";
+}
+
+void Console::remark(const std::string& text) {
+  if (remarks_.insert(text).second) {
+    clearBar();
+    print(padded("cloud", 10) + text + "\n");
+    std::fflush(stdout);
+  }
+}
+
+void Console::update(double fraction, double of_run) {
   constexpr double bar_width = 24.0;
+  constexpr double min_of_run = 0.05;  // with less, the time that is left is not known
   const Clock::time_point now = Clock::now();
   if (!shows_bar_ || now - start_ < quiet_start || now - drawn_ < redraw_interval) {
     return;
@@ -86,11 +100,14 @@ void Console::update(double fraction) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   std::string bar(static_cast<std::size_t>(fraction * bar_width), '#');
   bar.resize(static_cast<std::size_t>(bar_width), '.');
-  std::array<char, 32> numbers;
-  std::snprintf(numbers.data(), numbers.size(), "] %3d %%  %.0f s",
-                static_cast<int>(fraction * 100.0), std::floor(secondsSince(start_)));
+  const double seconds = secondsSince(start_);
+  std::array<char, 64> numbers;
+  std::snprintf(numbers.data(), numbers.size(),
+                of_run < min_of_run ? "] %3d %%  %.0f s" : "] %3d %%  %.0f s, about %.0f s left",
+                static_cast<int>(fraction * 100.0), std::floor(seconds),
+                std::ceil(seconds * (1.0 - of_run) / std::max(of_run, min_of_run)));
   // \033[K clears the rest of the line, left over from a longer one.
-  print("\r  " + padded(stage_) + "[" + bar + numbers.data() + "\033[K");
+  print("\r  " + padded(part_ + stage_) + "[" + bar + numbers.data() + "\033[K");
   std::fflush(stdout);
 }
 

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,12 @@ public:
 
   /// Begins a stage.
   void begin(const std::string& stage);
-  /// How much of the stage is done, in [0, 1].
-  void update(double fraction);
+  /// How much of the stage is done, in [0, 1], and of the run, in [0, 1]; 0: not known.
+  void update(double fraction, double of_run = 0.0);
+  /// Prints what is known of the input; a text once.
+  void remark(const std::string& text);
+  /// Begins one of several parts of the input.
+  void beginPart(const std::string& part);
   /// For functions that report their progress: their part of the stage.
   FileProgress updates(double from = 0.0, double to = 1.0);
   std::function<bool(const Progress&)> progress(double to = 1.0);
@@ -65,6 +70,8 @@ private:
   const Detail detail_;
   const bool shows_bar_;
   const Clock::time_point start_ = Clock::now();
+  std::string part_;
+  std::set<std::string> remarks_;
   std::string stage_;
   Clock::time_point begin_;
   Clock::time_point drawn_;  ///< of the bar

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,7 @@ public:
     execution_.threads = user.threads;
     if (user.progress)
       execution_.progress = [this](const Progress& progress) {
-        return user_.progress({stage_, progress.fraction, part_, parts_});
+        return user_.progress({stage_, progress.fraction, part_, parts_, done(progress.fraction)});
       };
   }
   StageClock(const StageClock& other) = delete;  // execution() points here
@@ -48,6 +49,12 @@ public:
     report(0.0);
   }
 
+  /// Says what the part is. \see Progress::remark
+  void remark(std::string_view text) {
+    if (user_.progress && !user_.progress({stage_, 0.0, part_, parts_, done(0.0), text}))
+      throw Cancelled("reconstruct: cancelled by the progress callback");
+  }
+
   /// Keeps a fraction of the time that is left for the stages after the next call.
   void keep(double fraction) {
     kept_ = 0.0;
@@ -57,6 +64,7 @@ public:
   /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
   /// points_fraction of all points.
   void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
+    before_ += part > 0 ? fraction_ : 0.0;
     part_ = part;
     parts_ = parts;
     fraction_ = points_fraction;
@@ -114,6 +122,29 @@ private:
     stage_ = nullptr;
   }
 
+  /// \see Progress::done. What a stage takes is the median of 20 clouds.
+  double done(double fraction) {
+    struct Row {
+      std::string_view stage;
+      double end;
+    };
+    static constexpr Row rows[] = {
+        {"view", 0.09},          {"neighbors", 0.15},    {"graph", 0.28},     {"outliers", 0.31},
+        {"parts", kBeforeParts}, {"consolidation", 0.4}, {"openings", 0.55},  {"embedding", 0.62},
+        {"triangulation", 0.63}, {"optimization", 0.93}, {"smoothing", 0.95}, {"cleaning", 0.97},
+        {"fill", 0.98},          {"quality", 1.0}};
+    double begin = 0.0;
+    for (const Row& row : rows) {
+      if (row.stage == stage_) {
+        const double all = begin + (row.end - begin) * fraction;
+        const double in_parts = (1.0 - kBeforeParts) * before_ + (all - kBeforeParts) * fraction_;
+        done_ = std::max(done_, all <= kBeforeParts ? all : kBeforeParts + in_parts);
+      }
+      begin = row.end;
+    }
+    return done_;
+  }
+
   void report(double fraction) const { reportFraction(reportOf(execution_, stage_), fraction); }
 
   const Execution& user_;
@@ -128,6 +159,9 @@ private:
   std::size_t part_ = 0;
   std::size_t parts_ = 1;
   std::vector<StageTime> times_;
+  static constexpr double kBeforeParts = 0.33;  ///< what is done of the work before the first part
+  double before_ = 0.0;                         ///< of the points, those of the parts before
+  double done_ = 0.0;
 };
 
 }  // namespace spherical_param::internal

@@ -97,10 +97,8 @@ Finding partsOf(const SurfaceDiagnosis& diagnosis, const Options& given) {
 }
 
 /// Handles that the mesh lacks.
-std::optional<Finding> handlesOf(const Surface& result, const Options& given) {
+Finding handlesOf(const Surface& result, const Options& given) {
   const std::size_t missing = result.diagnosis.cut_handles;
-  if (missing == 0)
-    return std::nullopt;
   const std::string text = result.genus() == 0
                                ? counted(missing, "handle") + ", cut: the mesh is a sphere"
                                : counted(missing, "more handle") + ", cut";
@@ -155,9 +153,11 @@ std::optional<Finding> filledOf(const Surface& result, const Options& given) {
   const std::string kind = certain > 0 ? "opening" : "possible opening";
   const std::string text = count == 1 ? kind + of : counted(count, kind) + ", the largest" + of;
   const bool is_fault = certain > 0 && given.fill_holes == 0 && given.fill_holes_area == 0.0;
-  return certain > 0 && !is_open
-             ? shown(text, given, "surface", "open", is_fault)
-             : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};
+  Finding finding = certain > 0 && !is_open
+                        ? shown(text, given, "surface", "open", is_fault)
+                        : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};
+  finding.size = static_cast<double>(points);
+  return finding;
 }
 
 /// Twice as many, at least the default, without overflow.
@@ -166,17 +166,51 @@ int moreIterations(int iterations) {
                   iterations < std::numeric_limits<int>::max() / 2 ? 2 * iterations : iterations);
 }
 
-void addOfEmbedding(const Options& options, const Surface& result, std::vector<Finding>& findings) {
+std::optional<Finding> embeddingOf(const Options& options, const Surface& result) {
   const EmbeddingReport& embedding = result.embedding;
   if (embedding.fallback_start)
-    findings.push_back({"the embedding collapsed and was replaced by one of lower quality"});
-  else if (embedding.stop_reason == StopReason::Collapsed)
-    findings.push_back({"the embedding collapsed", "method", "default", false});
-  else if (embedding.stop_reason == StopReason::IterationLimit)
-    findings.push_back({"the embedding has not converged", "max_iterations",
-                        std::to_string(moreIterations(options.paper.max_iterations)), false});
-  else if (embedding.stop_reason == StopReason::Stagnated)
-    findings.push_back({"the embedding has not converged: its residual no longer falls"});
+    return Finding{"the embedding collapsed and was replaced by one of lower quality"};
+  if (embedding.stop_reason == StopReason::Collapsed)
+    return Finding{"the embedding collapsed", "method", "default", false};
+  if (embedding.stop_reason == StopReason::IterationLimit)
+    return Finding{"the embedding has not converged", "max_iterations",
+                   std::to_string(moreIterations(options.paper.max_iterations)), false};
+  if (embedding.stop_reason == StopReason::Stagnated)
+    return Finding{"the embedding has not converged: its residual no longer falls"};
+  return std::nullopt;
+}
+
+/// The mesh is folded.
+Finding foldOf(const Options& given, const Surface& result) {
+  Finding fold{"the mesh is folded: " + percent(result.diagnosis.edges_outside_graph) +
+                   " of its edges join points that are far apart in the cloud",
+               "", "", true};
+  if (isRaw(given))
+    std::tie(fold.option, fold.value) = std::pair("method", "default");
+  else if (isRough(result))
+    std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
+  else if (result.is_noisy && result.consolidation && given.smoothing == 0)
+    std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
+  return fold;
+}
+
+/// Adds a finding of a part to those of all. The largest of a kind speaks for all of them, with an
+/// option that helps one of them.
+void addTo(std::vector<Finding>& all, Finding finding, Index part) {
+  auto same = std::find_if(all.begin(), all.end(),
+                           [&](const Finding& other) { return other.kind == finding.kind; });
+  if (same == all.end())
+    same = all.insert(same, finding);
+  std::vector<Index> parts = std::move(same->parts);
+  if (parts.empty() || parts.back() != part)
+    parts.push_back(part);
+  if (finding.size > same->size)
+    std::swap(finding, *same);
+  if (same->option.empty())
+    std::tie(same->option, same->value) = std::tie(finding.option, finding.value);
+  same->is_fault = same->is_fault || finding.is_fault;
+  same->is_consequence = same->is_consequence && finding.is_consequence;
+  same->parts = std::move(parts);
 }
 
 }  // namespace
@@ -184,67 +218,75 @@ void addOfEmbedding(const Options& options, const Surface& result, std::vector<F
 std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
+  const auto add = [&](const std::string& kind, bool is_so, const std::optional<Finding>& finding,
+                       double size = 0.0) {
+    if (!is_so || !finding)
+      return;
+    findings.push_back(*finding);
+    findings.back().kind = kind;
+    findings.back().size = std::max(finding->size, size);
+  };
+  const auto number = [](std::size_t count) { return static_cast<double>(count); };
   const bool is_consolidated = given.consolidation == ConsolidationMode::Auto;
   const std::size_t outliers = result.outliers.size();
-  if (outliers > 0)
-    findings.push_back(
-        shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false));
+  add("stray points", outliers > 0,
+      shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false),
+      number(outliers));
   if (!diagnosis.bridges.empty())
-    findings.push_back(partsOf(diagnosis, given));
-  if (const std::optional<Finding> filled = filledOf(result, given))
-    findings.push_back(*filled);
-  if (const std::optional<Finding> base = baseOf(result, given))
-    findings.push_back(*base);
-  if (isRough(result) && !result.isFolded())
-    findings.push_back({"the points are noisy", "consolidation", "auto", false});
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    if (diagnosis.coarse_steps[axis] > 0.0)
-      findings.push_back({std::string(1, "xyz"[axis]) + " has steps of " +
-                          decimal(diagnosis.coarse_steps[axis], 6) +
-                          ": the file lost digits; subtract an offset before writing single "
-                          "precision"});
-  if (diagnosis.is_scattered)
-    findings.push_back({"the points are too few or too noisy to show a surface"});
-  if (diagnosis.fills_volume)
-    findings.push_back({"the points fill a volume: they sample no surface; take its boundary"});
-  else if (diagnosis.is_layered)
-    findings.push_back({"the points are several layers of voxels, no surface: take their boundary",
-                        is_consolidated ? "" : "consolidation", is_consolidated ? "" : "auto",
-                        false});
-  else if (diagnosis.is_on_curves)
-    findings.push_back({"the points lie along curves, like centre lines, without a surface "
-                        "between: put points around the curves"});
-  else if (diagnosis.is_on_lines)
-    findings.push_back({"the points lie along lines, and the surface between these is a guess"});
-  if (const std::optional<Finding> handles = handlesOf(result, given))
-    findings.push_back(*handles);
-  if (diagnosis.is_one_sided)
-    findings.push_back(
-        {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
-  if (isFolded(given, result)) {
-    Finding fold{"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
-                     " of its edges join points that are far apart in the cloud",
-                 "", "", true};
-    if (isRaw(given))
-      std::tie(fold.option, fold.value) = std::pair("method", "default");
-    else if (isRough(result))
-      std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
-    else if (result.is_noisy && result.consolidation && given.smoothing == 0)
-      std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
-    findings.push_back(fold);
+    add("separate parts", true, partsOf(diagnosis, given), number(diagnosis.joined_parts));
+  const bool is_certain = result.filledOpenings() > 0;
+  add(is_certain ? "openings" : "possible openings", true, filledOf(result, given));
+  add("open base", true, baseOf(result, given));
+  add("noise", isRough(result) && !result.isFolded(),
+      Finding{"the points are noisy", "consolidation", "auto", false});
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double step = diagnosis.coarse_steps[axis];
+    add(
+        std::string("steps of ") + "xyz" [axis], step > 0.0,
+        Finding {
+          std::string(1, "xyz"[axis]) + " has steps of " + decimal(step, 6) +
+              ": the file lost digits; subtract an offset before writing single precision"
+        },
+        step);
   }
-  addOfEmbedding(given, result, findings);
-  if (result.is_out_of_time)
-    findings.push_back({"the time limit ended the work early: this is the best mesh so far"});
-  if (result.left_out_triangles > 0)
-    findings.push_back({counted(result.left_out_triangles, "triangle") +
-                            " that would intersect others, left out: small openings",
-                        "", "", hasTangle(result)});
-  if (result.has_certain_triangles_only)
-    findings.push_back(
-        {"only triangles that are certain: a mesh of all points is a tangle", "", "", true});
-  if (result.intersecting_triangles > 0)
-    findings.push_back({"self-intersections", "", "", true});
+  add("few points", diagnosis.is_scattered,
+      Finding{"the points are too few or too noisy to show a surface"});
+  if (diagnosis.fills_volume)
+    add("volume", true,
+        Finding{"the points fill a volume: they sample no surface; take its boundary"});
+  else if (diagnosis.is_layered)
+    add("layers", true,
+        Finding{"the points are several layers of voxels, no surface: take their boundary",
+                is_consolidated ? "" : "consolidation", is_consolidated ? "" : "auto", false});
+  else if (diagnosis.is_on_curves)
+    add("curves", true,
+        Finding{"the points lie along curves, like centre lines, without a surface between: put "
+                "points around the curves"});
+  else
+    add("lines", diagnosis.is_on_lines,
+        Finding{"the points lie along lines, and the surface between these is a guess"});
+  add("handles", diagnosis.cut_handles > 0, handlesOf(result, given),
+      number(diagnosis.cut_handles));
+  add("possible handles", diagnosis.possible_handles > 0,
+      Finding{counted(diagnosis.possible_handles, "possible handle") +
+              ", cut: more points or less noise there would tell"},
+      number(diagnosis.possible_handles));
+  add("one side", diagnosis.is_one_sided,
+      Finding{"the surface has only one side, like a Moebius strip: the mesh is torn", "", "",
+              true});
+  add("fold", isFolded(given, result), foldOf(given, result), diagnosis.edges_outside_graph);
+  add("embedding", true, embeddingOf(given, result));
+  add("time limit", result.is_out_of_time,
+      Finding{"the time limit ended the work early: this is the best mesh so far"});
+  add("triangles left out", result.left_out_triangles > 0,
+      Finding{counted(result.left_out_triangles, "triangle") +
+                  " that would intersect others, left out: small openings",
+              "", "", hasTangle(result)},
+      number(result.left_out_triangles));
+  add("certain triangles", result.has_certain_triangles_only,
+      Finding{"only triangles that are certain: a mesh of all points is a tangle", "", "", true});
+  add("self-intersections", result.intersecting_triangles > 0,
+      Finding{"self-intersections", "", "", true});
   const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
     return !finding.option.empty();
   });
@@ -301,35 +343,22 @@ std::string failureOf(std::size_t parts, std::size_t points, std::string error) 
 
 void summarize(std::size_t parts_in_all, Result& result) {
   std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::vector<std::size_t>> parts;  // of each finding
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;
-    for (const Finding& finding : surfaces[i].findings) {
-      const auto same =
-          std::find_if(result.findings.begin(), result.findings.end(), [&](const Finding& other) {
-            return other.text == finding.text && other.value == finding.value &&
-                   other.is_consequence == finding.is_consequence;
-          });
-      const auto place = static_cast<std::size_t>(same - result.findings.begin());
-      if (same == result.findings.end()) {
-        result.findings.push_back(finding);
-        parts.emplace_back();
-      }
-      parts[place].push_back(i + 1);
-    }
+    for (const Finding& finding : surfaces[i].findings)
+      addTo(result.findings, finding, static_cast<Index>(i) + 1);
   }
   if (surfaces.size() == 1) {
     result.verdict = surfaces.front().verdict;
+    result.findings = surfaces.front().findings;
   } else {
-    constexpr std::size_t most_named = 8;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      std::string of;
-      for (const std::size_t part : parts[i])
-        of += (of.empty() ? "part " : ", part ") + std::to_string(part);
-      if (parts[i].size() > most_named)
-        of = grouped(parts[i].size()) + " parts";
-      result.findings[i].text.insert(0, of + ": ");
+    for (Finding& finding : result.findings) {
+      const std::size_t count = finding.parts.size();
+      finding.text.insert(0, count == 1
+                                 ? "part " + std::to_string(finding.parts.front()) + ": "
+                                 : grouped(count) + " of " + counted(surfaces.size(), "part") +
+                                       (finding.size > 0.0 ? ", at worst: " : ": "));
     }
     const auto count = [&](const std::string& of, const auto& has) {
       const auto found = std::count_if(surfaces.begin(), surfaces.end(), has);
@@ -362,8 +391,18 @@ void summarize(std::size_t parts_in_all, Result& result) {
                                decimal(distance, 3) + " of the mesh.");
   LeftOut stray = result.left_out;
   stray.not_finite.clear();
-  if (const std::string text = stray.text(); !text.empty())
-    result.verdict.replace(result.verdict.size() - 1, 1, "; " + text + " left out.");
+  if (const std::string text = stray.text(); !text.empty()) {
+    constexpr double min_share = 0.01;
+    std::size_t taken = 0;
+    for (const Surface& surface : surfaces)
+      taken += surface.vertex_of_input.size();
+    const auto count = static_cast<double>(stray.count());
+    const double share = count / (count + static_cast<double>(taken));
+    result.verdict.replace(result.verdict.size() - 1, 1,
+                           share < min_share
+                               ? "; " + text + " left out."
+                               : "; " + percent(share) + " of the points left out: " + text + ".");
+  }
   if (parts_in_all > surfaces.size())
     result.verdict += " " + counted(parts_in_all - surfaces.size(), "part") + " cannot be meshed.";
   if (surfaces.size() == 1)
@@ -373,6 +412,10 @@ void summarize(std::size_t parts_in_all, Result& result) {
 }  // namespace spherical_param::internal
 
 namespace spherical_param {
+
+std::size_t LeftOut::count() const {
+  return not_finite.size() + unused.size() + outliers.size() + other_parts.size() + unmeshed.size();
+}
 
 std::string LeftOut::text() const {
   std::string text;

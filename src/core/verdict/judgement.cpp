@@ -54,12 +54,12 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
       (mesh.mesh.hasOpen() || !finished.intersecting.pairs.empty() || mesh.left_out_triangles > 0);
   SurfaceDiagnosis diagnosis = diagnoseSurface(points, triangles, graph.graph, graph.bridges,
                                                finished.openings, of_diagnosis, options.threads);
-  diagnosis.is_on_lines = areOnLines(points, graph.graph);
   reportFraction(report, 0.5);
   Surface result = judge(std::move(finished), std::move(diagnosis), options);
   reportFraction(report, 0.8);
   result.left_out_triangles = mesh.left_out_triangles;
   result.diagnosis.cut_handles = mesh.cut_handles;
+  result.diagnosis.possible_handles = mesh.possible_handles;
   result.has_certain_triangles_only = mesh.has_certain_triangles_only;
   for (const StrayPoint& stray : graph.stray_points)
     result.outliers.push_back(stray.point);

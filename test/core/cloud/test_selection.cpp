@@ -57,7 +57,8 @@ TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
             "3 surfaces, 1 with openings, 1 with handles, all sound; 1 stray point left out.");
   EXPECT_EQ(scan.surface().genus(), 1U);
   EXPECT_EQ(reconstruct(points, given("surface", "closed", "parts", "largest")).verdict,
-            "A sound mesh with 1 handle; 1 stray point, 900 points in other parts left out.");
+            "A sound mesh with 1 handle; 58 % of the points left out: 1 stray point, 900 points in "
+            "other parts.");
   const Surface sphere = surfaceOf(points, quick(test::sphere()));
   EXPECT_TRUE(isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
   EXPECT_EQ(withTopology(paper()).parts, PartsMode::All);

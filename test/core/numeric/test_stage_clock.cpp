@@ -80,13 +80,17 @@ TEST(StageClock, StagesComeInOrder) {
   Options options = given("outliers", "auto", "parts", "each", "smoothing", 1, "fill", "smooth");
   options.details = true;  // which need the sphere
   Names names;
+  double done = 0.0;
   options.progress = [&](const Progress& progress) {
+    EXPECT_GE(progress.done, done);
+    done = progress.done;
     if (names.empty() || names.back() != progress.stage)
       names.emplace_back(progress.stage);
     return true;
   };
   const Result result = reconstruct(points, options);
   EXPECT_EQ(names, expected);
+  EXPECT_NEAR(done, 1.0, 1e-9);
   Names timed{"neighbors", "graph", "outliers", "parts"};
   timed.insert(timed.end(), of_part.begin(), of_part.end());
   ASSERT_EQ(result.stages.size(), timed.size());
@@ -94,6 +98,32 @@ TEST(StageClock, StagesComeInOrder) {
     EXPECT_EQ(result.stages[i].name, timed[i]);
     EXPECT_GE(result.stages[i].seconds, 0.0);
   }
+}
+
+TEST(StageClock, WhatTheCloudIsIsSaidOnceBeforeItIsMeshed) {
+  const auto remark_on = [](const Positions& points, const Options& given = {}) {
+    Options options = given;
+    std::string all;
+    bool is_early = true;
+    options.progress = [&](const Progress& progress) {
+      is_early = is_early && progress.stage != std::string("optimization");
+      EXPECT_TRUE(progress.remark.empty() || is_early);
+      all += progress.remark;
+      return true;
+    };
+    reconstruct(points, options);
+    return all;
+  };
+  const Positions rings =
+      gridOf(12, 60, [](int ring, int i) { return onCircle(2.0 * kPi / 60 * i, 1.0, 0.3 * ring); });
+  EXPECT_EQ(remark_on(spiralSphere(1000)), "");
+  EXPECT_EQ(remark_on(noisySphere(600, 1.0)),
+            "noisy; points move to the surface that they sample, and merge");
+  EXPECT_EQ(remark_on(rings), "lines of points; the surface between them is a guess");
+  EXPECT_EQ(remark_on(randomCube(3000, 1)),
+            "a volume, without a surface; triangles that are certain are kept, if they are enough");
+  EXPECT_EQ(remark_on(randomCube(3000, 1), sphere()),
+            "a volume, without a surface; its triangles will intersect");
 }
 
 TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {

@@ -111,6 +111,8 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
          r.topology.genus = 1;
          r.diagnosis.cut_handles = 2;
        }},
+      {{"2 possible handles, cut: more points or less noise there would tell"},
+       [](Surface& r) { r.diagnosis.possible_handles = 2; }},
       {{"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true},
        [](Surface& r) { r.diagnosis.is_one_sided = true; }},
       {{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud", "", "",
@@ -172,36 +174,43 @@ TEST(Findings, AFaultWithoutAnOptionBesideOneThatHasOneIsAConsequence) {
   EXPECT_TRUE(findings[1].is_consequence);
 }
 
-TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
+TEST(Findings, OfSeveralPartsAreSaidOnceAKindByTheLargest) {
+  const auto of_kind = [](const char* kind, double size, Finding finding) {
+    finding.kind = kind;
+    finding.size = size;
+    return finding;
+  };
   Result result;
   result.surfaces.resize(3, soundResult());
-  result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
-  result.surfaces[2].findings = {{"noisy", "consolidation", "auto", false}, {"torn", "", "", true}};
+  result.surfaces[0].findings = {of_kind("fold", 0.2, {"20 %", "smoothing", "5", false})};
+  result.surfaces[1].findings = {of_kind("side", 0.0, {"torn", "", "", true}),
+                                 of_kind("lines", 0.0, {"lines"})};
+  result.surfaces[2].findings = {of_kind("fold", 0.3, {"30 %", "", "", true}),
+                                 of_kind("lines", 0.0, {"lines"})};
   EXPECT_EQ(failureOf(1, 1200, "reconstruct: it is flat"),
             "1 part (1,200 points) cannot be meshed: it is flat");
   EXPECT_EQ(failureOf(2, 1200, "slow"), "2 parts (1,200 points) cannot be meshed: slow");
   summarize(4, result);
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
-    texts.push_back(finding.text);
-  EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
-  EXPECT_EQ(result.verdict, "3 surfaces, 1 with faults. 1 part cannot be meshed.");
-  for (const std::size_t count : {8U, 9U}) {
-    result = {};
-    result.surfaces.resize(count, soundResult());
-    for (Surface& surface : result.surfaces)
-      surface.findings = {{"torn", "", "", true}};
-    summarize(count, result);
-    EXPECT_EQ(result.findings[0].text,
-              count == 9 ? "9 parts: torn"
-                         : "part 1, part 2, part 3, part 4, part 5, part 6, part 7, part 8: torn");
-  }
+    texts.push_back(finding.text + " " + finding.option);
+  EXPECT_EQ(texts, (std::vector<std::string>{"2 of 3 parts, at worst: 30 % smoothing",
+                                             "part 2: torn ", "2 of 3 parts: lines "}));
+  EXPECT_EQ(result.findings[0].parts, (std::vector<Index>{1, 3}));
+  EXPECT_TRUE(result.findings[0].is_fault && !result.findings[2].is_fault);
+  EXPECT_EQ(result.verdict, "3 surfaces, 2 with faults. 1 part cannot be meshed.");
   result = {};
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[0].verdict = "Fine.";
+  result.left_out.outliers.resize(5);
   summarize(1, result);
-  EXPECT_EQ(result.findings[0].text + " " + result.verdict, "noisy Fine.");
+  EXPECT_EQ(result.findings[0].text + " " + result.verdict, "noisy Fine; 5 stray points left out.");
+  result.surfaces[0].verdict = "Fine.";
+  result.left_out.unmeshed.resize(kPoints / 9);
+  summarize(1, result);
+  EXPECT_EQ(result.verdict,
+            "Fine; 10 % of the points left out: 5 stray points, 111 points that cannot be meshed.");
 }
 
 TEST(LeftOut, SaysWhatAndHowMany) {
