@@ -218,75 +218,71 @@ void addTo(std::vector<Finding>& all, Finding finding, Index part) {
 std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
-  const auto add = [&](const std::string& kind, bool is_so, const std::optional<Finding>& finding,
-                       double size = 0.0) {
-    if (!is_so || !finding)
-      return;
-    findings.push_back(*finding);
-    findings.back().kind = kind;
-    findings.back().size = std::max(finding->size, size);
+  const auto add = [&](const std::string& kind, Finding finding, double size = 0.0) {
+    finding.kind = kind;
+    finding.size = size;
+    findings.push_back(std::move(finding));
   };
-  const auto number = [](std::size_t count) { return static_cast<double>(count); };
+  const auto add_count = [&](const char* kind, std::size_t count, const Finding& finding) {
+    if (count > 0)
+      add(kind, finding, static_cast<double>(count));
+  };
   const bool is_consolidated = given.consolidation == ConsolidationMode::Auto;
   const std::size_t outliers = result.outliers.size();
-  add("stray points", outliers > 0,
-      shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false),
-      number(outliers));
+  add_count(
+      "stray points", outliers,
+      shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false));
   if (!diagnosis.bridges.empty())
-    add("separate parts", true, partsOf(diagnosis, given), number(diagnosis.joined_parts));
-  const bool is_certain = result.filledOpenings() > 0;
-  add(is_certain ? "openings" : "possible openings", true, filledOf(result, given));
-  add("open base", true, baseOf(result, given));
-  add("noise", isRough(result) && !result.isFolded(),
-      Finding{"the points are noisy", "consolidation", "auto", false});
+    add_count("separate parts", diagnosis.joined_parts, partsOf(diagnosis, given));
+  if (const std::optional<Finding> filled = filledOf(result, given))
+    add(result.filledOpenings() > 0 ? "openings" : "possible openings", *filled, filled->size);
+  if (const std::optional<Finding> base = baseOf(result, given))
+    add("open base", *base);
+  if (isRough(result) && !result.isFolded())
+    add("noise", {"the points are noisy", "consolidation", "auto", false});
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double step = diagnosis.coarse_steps[axis];
-    add(
-        std::string("steps of ") + "xyz" [axis], step > 0.0,
-        Finding {
-          std::string(1, "xyz"[axis]) + " has steps of " + decimal(step, 6) +
-              ": the file lost digits; subtract an offset before writing single precision"
-        },
-        step);
+    const std::string name(1, "xyz"[axis]);
+    if (step > 0.0)
+      add("steps of " + name,
+          {name + " has steps of " + decimal(step, 6) +
+           ": the file lost digits; subtract an offset before writing single precision"},
+          step);
   }
-  add("few points", diagnosis.is_scattered,
-      Finding{"the points are too few or too noisy to show a surface"});
+  if (diagnosis.is_scattered)
+    add("few points", {"the points are too few or too noisy to show a surface"});
   if (diagnosis.fills_volume)
-    add("volume", true,
-        Finding{"the points fill a volume: they sample no surface; take its boundary"});
+    add("volume", {"the points fill a volume: they sample no surface; take its boundary"});
   else if (diagnosis.is_layered)
-    add("layers", true,
-        Finding{"the points are several layers of voxels, no surface: take their boundary",
-                is_consolidated ? "" : "consolidation", is_consolidated ? "" : "auto", false});
+    add("layers", {"the points are several layers of voxels, no surface: take their boundary",
+                   is_consolidated ? "" : "consolidation", is_consolidated ? "" : "auto", false});
   else if (diagnosis.is_on_curves)
-    add("curves", true,
-        Finding{"the points lie along curves, like centre lines, without a surface between: put "
-                "points around the curves"});
-  else
-    add("lines", diagnosis.is_on_lines,
-        Finding{"the points lie along lines, and the surface between these is a guess"});
-  add("handles", diagnosis.cut_handles > 0, handlesOf(result, given),
-      number(diagnosis.cut_handles));
-  add("possible handles", diagnosis.possible_handles > 0,
-      Finding{counted(diagnosis.possible_handles, "possible handle") +
-              ", cut: more points or less noise there would tell"},
-      number(diagnosis.possible_handles));
-  add("one side", diagnosis.is_one_sided,
-      Finding{"the surface has only one side, like a Moebius strip: the mesh is torn", "", "",
-              true});
-  add("fold", isFolded(given, result), foldOf(given, result), diagnosis.edges_outside_graph);
-  add("embedding", true, embeddingOf(given, result));
-  add("time limit", result.is_out_of_time,
-      Finding{"the time limit ended the work early: this is the best mesh so far"});
-  add("triangles left out", result.left_out_triangles > 0,
-      Finding{counted(result.left_out_triangles, "triangle") +
-                  " that would intersect others, left out: small openings",
-              "", "", hasTangle(result)},
-      number(result.left_out_triangles));
-  add("certain triangles", result.has_certain_triangles_only,
-      Finding{"only triangles that are certain: a mesh of all points is a tangle", "", "", true});
-  add("self-intersections", result.intersecting_triangles > 0,
-      Finding{"self-intersections", "", "", true});
+    add("curves", {"the points lie along curves, like centre lines, without a surface between: "
+                   "put points around the curves"});
+  else if (diagnosis.is_on_lines)
+    add("lines", {"the points lie along lines, and the surface between these is a guess"});
+  add_count("handles", diagnosis.cut_handles, handlesOf(result, given));
+  add_count("possible handles", diagnosis.possible_handles,
+            {counted(diagnosis.possible_handles, "possible handle") +
+             ", cut: more points or less noise there would tell"});
+  if (diagnosis.is_one_sided)
+    add("one side",
+        {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
+  if (isFolded(given, result))
+    add("fold", foldOf(given, result), diagnosis.edges_outside_graph);
+  if (const std::optional<Finding> embedding = embeddingOf(given, result))
+    add("embedding", *embedding);
+  if (result.is_out_of_time)
+    add("time limit", {"the time limit ended the work early: this is the best mesh so far"});
+  add_count("triangles left out", result.left_out_triangles,
+            {counted(result.left_out_triangles, "triangle") +
+                 " that would intersect others, left out: small openings",
+             "", "", hasTangle(result)});
+  if (result.has_certain_triangles_only)
+    add("certain triangles",
+        {"only triangles that are certain: a mesh of all points is a tangle", "", "", true});
+  if (result.intersecting_triangles > 0)
+    add("self-intersections", {"self-intersections", "", "", true});
   const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
     return !finding.option.empty();
   });
