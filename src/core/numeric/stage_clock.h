@@ -26,7 +26,8 @@ public:
     execution_.threads = user.threads;
     if (user.progress)
       execution_.progress = [this](const Progress& progress) {
-        return user_.progress({stage_, progress.fraction, part_, parts_, done(progress.fraction)});
+        return user_.progress(
+            {stage_, progress.fraction, part_, parts_, done(progress.fraction), remark_});
       };
   }
   StageClock(const StageClock& other) = delete;  // execution() points here
@@ -51,8 +52,9 @@ public:
 
   /// Says what the part is. \see Progress::remark
   void remark(std::string_view text) {
-    if (user_.progress && !user_.progress({stage_, 0.0, part_, parts_, done(0.0), text}))
-      throw Cancelled("reconstruct: cancelled by the progress callback");
+    remark_ = text;
+    report(0.0);
+    remark_ = {};
   }
 
   /// Keeps a fraction of the time that is left for the stages after the next call.
@@ -162,6 +164,7 @@ private:
   static constexpr double kBeforeParts = 0.33;  ///< what is done of the work before the first part
   double before_ = 0.0;                         ///< of the points, those of the parts before
   double done_ = 0.0;
+  std::string_view remark_;  ///< empty, but while it is said
 };
 
 }  // namespace spherical_param::internal
