@@ -185,7 +185,7 @@ Json sphereTurn(const ReportMesh& mesh) {
   return std::vector<double>(turn.data(), turn.data() + turn.size());
 }
 
-/// What the cloud has beside the mesh: colours, the points before smoothing, those left out.
+/// What the cloud has beside the mesh: colours, the points before smoothing.
 void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh& mesh,
               Arrays& arrays) {
   if (!cloud.data->colors.empty()) {
@@ -200,6 +200,10 @@ void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh
     const Positions points = positionsOf(*cloud.data)(Eigen::all, mesh.inputs);
     arrays.addPoints("cloud", points, boxOf(points));
   }
+}
+
+/// Adds the finite points that were left out, and returns their number.
+std::size_t addLeftOut(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& arrays) {
   const LeftOut& all = cloud.result.left_out;
   std::vector<Index> left_out;
   for (const auto* reason : {&all.unused, &all.outliers, &all.other_parts, &all.unmeshed}) {
@@ -218,6 +222,7 @@ void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
     arrays.addPoints("left_out", points, {box.min() - margin, box.max() + margin});
   }
+  return left_out.size();
 }
 
 /// Adds the unfolding, and returns its frames.
@@ -354,8 +359,7 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
     const Eigen::Vector3d& sensor = cloud.result.view->place;
     json["view"] = std::vector<double>(sensor.begin(), sensor.end());
   }
-  const LeftOut& left_out = cloud.result.left_out;
-  json["left_out"] = left_out.count() - left_out.not_finite.size();
+  json["left_out"] = addLeftOut(cloud, mesh, arrays);
   json["sphere_turn"] = sphereTurn(mesh);
   json["frames"] = surfaces.size() == 1 ? addHistory(*surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();
