@@ -91,17 +91,14 @@ PointData readObj(const std::string& path, const std::vector<std::string>& /*col
       return;
     }
     if (words[0] == "v" || words[0] == "vn") {
-      const auto values = threeNumbers(words, 1);
-      if (!values) {
-        failContent(path, "line " + std::to_string(line) + " has no three numbers");
-      }
+      const auto values = requireThreeNumbers(path, line, words, 1);
       if (words[0] == "vn") {
-        content.normals.push_back(*values);
+        content.normals.push_back(values);
         return;
       }
       const auto color = threeNumbers(words, 4);
       for (std::size_t d = 0; d < 3; ++d) {
-        content.columns[d].values.push_back((*values)[d]);
+        content.columns[d].values.push_back(values[d]);
         if (color) {
           content.columns[3 + d].values.push_back((*color)[d]);
         }

@@ -26,14 +26,16 @@ PointData readOff(const std::string& path, const std::vector<std::string>& /*col
     return static_cast<std::uint64_t>(requireCount(path, header[group].str(), what));
   };
   RecordElement vertices{"vertex", count(3, "points"), {}};
-  const auto add = [&](bool has_them, std::initializer_list<const char*> names) {
-    for (const char* name : names) {
-      vertices.fields.resize(vertices.fields.size() + (has_them ? 1 : 0), {name, 'F', 8});
-    }
-  };
-  add(true, {"x", "y", "z"});
-  add(header.length(2) > 0, {"nx", "ny", "nz"});
-  add(header.length(1) > 0, {"red", "green", "blue"});
+  std::vector<const char*> names = {"x", "y", "z"};
+  if (header.length(2) > 0) {
+    names.insert(names.end(), {"nx", "ny", "nz"});
+  }
+  if (header.length(1) > 0) {
+    names.insert(names.end(), {"red", "green", "blue"});
+  }
+  for (const char* name : names) {
+    vertices.fields.push_back({name, 'F', 8});
+  }
   const RecordElement faces{"face", count(4, "faces"), {{"vertex_indices", 'I', 4, 1, 4}}};
   const auto values = static_cast<double>(vertices.count * vertices.fields.size() + faces.count);
   const auto body = static_cast<std::uint64_t>(header.length());

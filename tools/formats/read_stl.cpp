@@ -45,14 +45,9 @@ PointData readStl(const std::string& path, const std::vector<std::string>& /*col
     Words words;
     forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
       split(line, " \t\r", words);
-      if (words.empty() || lowerCase(words[0]) != "vertex") {
-        return;
+      if (!words.empty() && lowerCase(words[0]) == "vertex") {
+        add(requireThreeNumbers(path, number, words, 1));
       }
-      const auto corner = threeNumbers(words, 1);
-      if (!corner) {
-        failContent(path, "line " + std::to_string(number) + " has no three numbers");
-      }
-      add(*corner);
     });
   } else {
     requireBytes(path, static_cast<double>(size), file_size);

@@ -257,8 +257,8 @@ struct TextLayout {
   bool are_given = false;          ///< by the caller
   bool has_heading = false;        ///< before the points
   bool has_counts = false;         ///< of points, before them
-  bool is_numbered = false;        ///< \see areNumbered
-  bool has_letters = false;        ///< points begin with p, and no other lines
+  std::int64_t numbered = 0;       ///< points by the first line, if areNumbered(); else 0
+  bool has_letters = false;        ///< each line begins with a letter, those of points with p
   bool has_lists = false;          ///< rows go on behind the columns
 };
 
@@ -276,9 +276,9 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     std::transform(lines.begin(), lines.end(), lines.begin(), behindLetter);
     lines.erase(std::remove(lines.begin(), lines.end(), ""), lines.end());
   }
-  layout.is_numbered = areNumbered(lines);
-  if (layout.is_numbered) {
+  if (areNumbered(lines)) {
     const Words counts = split(lines.front(), " \t\r,;");
+    layout.numbered = toInteger(counts.front()).value_or(0);
     if (!layout.are_given && counts.size() > 1 && counts[1] == "2") {
       failReading(path, "its points have two dimensions, as its first line says", name_columns);
     }
@@ -333,7 +333,7 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     layout.names = {"x", "y", "z", "nx", "ny", "nz"};
   } else if (layout.names.empty() && cells.size() == 6 && extension == ".xyzrgb") {
     layout.names = {"x", "y", "z", "red", "green", "blue"};
-  } else if (layout.names.empty() && layout.is_numbered) {
+  } else if (layout.names.empty() && layout.numbered > 0) {
     layout.names = {"-", "x", "y", "z"};
     layout.names.resize(std::max(cells.size(), layout.names.size()), "-");
   }
@@ -491,24 +491,24 @@ PointData readText(const std::string& path, const std::vector<std::string>& give
                    const FileProgress& progress) {
   const TextLayout layout = layoutOf(path, given);
   TextColumns table(path, layout);
-  double announced = 0.0;
+  const bool is_numbered = layout.numbered > 0;
+  auto announced = static_cast<double>(layout.numbered);
   double count = 0.0;
-  bool is_first = layout.has_heading || layout.is_numbered;  // a heading, or counts
+  bool is_first = layout.has_heading || is_numbered;  // a heading, or counts
   forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
     line = withoutComment(line);
     line = layout.has_letters ? behindLetter(line) : line;
     if (line.empty()) {
       return;
     }
-    if ((layout.has_counts && isCount(line)) || (layout.is_numbered && is_first)) {
-      announced += static_cast<double>(*toInteger(split(line, " \t\r,;").front()));
-      is_first = is_first && !layout.is_numbered;
+    if (layout.has_counts && isCount(line)) {
+      announced += static_cast<double>(*toInteger(line));
     } else if (!std::exchange(is_first, false)) {
       table.add(number, line);
       count += 1.0;
     }
   });
-  if (count < announced || (layout.is_numbered && count > announced)) {
+  if (count < announced || (is_numbered && count > announced)) {
     failContent(path, std::string("it has ") + (count < announced ? "fewer" : "more") +
                           " points than its first line says");
   }

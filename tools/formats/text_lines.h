@@ -59,4 +59,14 @@ inline std::optional<std::array<double, 3>> threeNumbers(const Words& words, std
   return values;
 }
 
+/// The same of a line that must have them. \throw Failure
+inline std::array<double, 3> requireThreeNumbers(const std::string& path, std::size_t line,
+                                                 const Words& words, std::size_t first) {
+  const auto values = threeNumbers(words, first);
+  if (!values) {
+    failContent(path, "line " + std::to_string(line) + " has no three numbers");
+  }
+  return *values;
+}
+
 }  // namespace spherical_param::tools
