@@ -27,6 +27,14 @@ class ReleaseFiles(unittest.TestCase):
             with self.subTest(path=str(path.relative_to(ROOT))), path.open() as file:
                 self.assertIsInstance(json.load(file) if path.suffix == ".json" else yaml.safe_load(file), dict)
 
+    def test_presets_set_options_that_exist(self):
+        scripts = [ROOT / "CMakeLists.txt", *(ROOT / "cmake").glob("*.cmake")]
+        declared = {name for path in scripts
+                    for name in re.findall(r"(?:option|set)\((SPHERICAL_PARAM_\w+)", path.read_text())}
+        for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]:
+            ours = {name for name in preset["cacheVariables"] if name.startswith("SPHERICAL_PARAM_")}
+            self.assertLessEqual(ours, declared, preset["name"])
+
     def test_versions_and_dates_are_those_of_the_build_and_the_changelog(self):
         version = found(r"^project\(.* VERSION ([0-9.]+) ", "CMakeLists.txt")
         citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
