@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Stress tests: fuzzed files and calls, nasty sets of points, surfaces that are no spheres, threads.
+# Fuzzes the calls of the library, and the files that the tools read.
 #
 #   tools/stress.sh            everything: hours
 #   tools/stress.sh --quick    minutes, which tools/test_all.sh runs
@@ -13,21 +13,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/common/test_steps.sh
 quick_option "$@"
 # Seconds of each fuzzer; seed 0: another one each time.
-options=() seconds=600 seed=0
-[ "$quick" = no ] || options=(--quick) seconds=5 seed=1
+seconds=600 seed=0
+[ "$quick" = no ] || seconds=10 seed=1
 
 work="$PWD/build/stress"
 rm -rf "$work"
 mkdir -p "$work"
-: >"$work/rows"
-
-# part <step> <command>...: a step whose output has a row of the table.
-part() {
-  local good=yes
-  check "$@" || good=no
-  grep -h '^row: ' "$logs/${1//[^A-Za-z0-9]/_}.log" >>"$work/rows" || true
-  [ "$good" = yes ]
-}
 
 # fuzz <corpus>: on a copy of the corpus, whose folder has the name of its fuzzer.
 fuzz() {
@@ -41,25 +32,16 @@ fuzz() {
   tried="$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)"
   [ "${tried:-0}" -gt 0 ] || found=1
   [ "$found" -eq 0 ] || tail -n 40 "$log"
-  echo "row: fuzz_$name, $seconds s, ASan and UBSan | ${tried:-0} | $found"
+  echo "| fuzz_$name, $seconds s, ASan and UBSan | ${tried:-0} | $found |" >>"$work/rows"
   return "$found"
 }
 
 if check "fuzzers: build" configure_and_build asan fuzzers; then
   for corpus in test/fuzz/corpus/*; do
-    part "fuzz_${corpus##*/}" fuzz "$corpus" || true
+    check "fuzz_${corpus##*/}" fuzz "$corpus" || true
   done
+  echo '| part | inputs tried | found |'
+  echo '|---|---:|---:|'
+  cat "$work/rows"
 fi
-if check "build" build_release stress_shapes stress_surfaces stress_threads; then
-  for name in shapes surfaces threads; do
-    part "$name" "build/release/bin/stress_$name" "${options[@]}" || true
-  done
-fi
-if check "thread sanitizer: build" configure_and_build tsan stress_threads; then
-  part "thread sanitizer" build/tsan/bin/stress_threads "${options[@]}" || true
-fi
-
-echo '| part | inputs tried | found |'
-echo '|---|---:|---:|'
-sed -e 's/^row: \(.*\)$/| \1 |/' "$work/rows"
 finish

@@ -90,8 +90,34 @@ private:
   std::size_t at_ = 0;
 };
 
-/// Point i of n in one of many encodings; without bytes, on a sphere.
-inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, Eigen::Index i,
+/// Point i of n of one of seven shapes that are hard to mesh.
+inline Eigen::Vector3d onShape(int shape, int i, double n) {
+  using spherical_param::test::kPi;
+  using spherical_param::test::onCircle;
+  const double t = i / n;
+  const double z = 1.0 - (2.0 * i + 1.0) / n;
+  const Eigen::Vector3d on_sphere = onCircle(2.4 * i, std::sqrt(std::max(0.0, 1.0 - z * z)), z);
+  switch (shape) {
+  case 1:  // circles, one above the other
+    return onCircle(kPi * i / 6.0, 1.0, i / 12);
+  case 2:  // a knot on a torus
+    return onCircle(6.0 * kPi * t, 1.0 + 0.4 * std::cos(10.0 * kPi * t),
+                    0.4 * std::sin(10.0 * kPi * t));
+  case 3:  // a curve of powers
+    return {t, t * t, t * t * t};
+  case 4:  // a long thin limb on a sphere
+    return i % 2 == 0 ? on_sphere : onCircle(2.4 * i, 0.05, 1.0 + 4.0 * t);
+  case 5:  // a lattice
+    return {i % 4 + 0.0, i / 4 % 4 + 0.0, i / 16 + 0.0};
+  case 6:  // two spheres far apart
+    return on_sphere + 1e6 * (i % 2) * Eigen::Vector3d::UnitX();
+  default:
+    return on_sphere;
+  }
+}
+
+/// Point i of n in one of many encodings; without bytes, on a shape.
+inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, int shape, Eigen::Index i,
                                  Eigen::Index n) {
   const std::uint8_t kind = bytes.byte() % 12;
   const bool is_of_earlier = (kind >= 4 && kind <= 6) || kind == 9;
@@ -139,21 +165,18 @@ inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, Eigen::I
     return {a, b, a + 2.0 * b};
   }
   default:
-    const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(n);
-    const double angle = 2.4 * static_cast<double>(i);
-    const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {radius * std::cos(angle), radius * std::sin(angle), z};
+    return onShape(shape, static_cast<int>(i), static_cast<double>(n));
   }
 }
 
-/// Up to 64 points; mostly all in the range that reconstruct() takes.
+/// Mostly up to 64 points, up to 300; mostly all in the range that reconstruct() takes.
 inline Positions pointsFrom(Bytes& bytes) {
   const std::uint8_t how = bytes.byte();
-  const Eigen::Index n = how < 250 ? 4 + how % 61 : how - 250;
+  const Eigen::Index n = how < 240 ? 4 + how % 61 : how < 250 ? 30 * (how - 239) : how - 250;
   const std::uint8_t range = bytes.byte();
   Positions points(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    points.col(i) = pointFrom(bytes, points, i, n);
+    points.col(i) = pointFrom(bytes, points, range / 8 % 7, i, n);
     if (range < 200)
       points.col(i) = points.col(i).unaryExpr(
           [](double x) { return std::isfinite(x) && std::abs(x) <= 1e100 ? x : 0.0; });

@@ -71,8 +71,8 @@ public:
   NeighborSearch operator()(const std::vector<Index>& some) {
     require(some_.empty(), "one search is made");
     require(std::is_sorted(some.begin(), some.end()), "points are ascending");
-    require(some.size() == stress::firstAtPlaces(stress::finiteOf(points_)).size() &&
-                stress::firstAtPlaces(points_(Eigen::all, some)).size() == some.size(),
+    require(some.size() == firstAtPlaces(finiteOf(points_)).size() &&
+                firstAtPlaces(points_(Eigen::all, some)).size() == some.size(),
             "it is made of one point at each position");
     some_ = some;
     return [this, right = test::bruteForceFactory(tamed_)(some)](const std::vector<Index>& queries,
@@ -100,7 +100,7 @@ public:
 
 private:
   bool areSome(const NeighborLists& lists, std::size_t count) const {
-    return stress::areLists(lists, count, static_cast<std::size_t>(points_.cols())) &&
+    return areLists(lists, count, static_cast<std::size_t>(points_.cols())) &&
            std::all_of(lists.indices.begin(), lists.indices.end(),
                        [&](Index i) { return std::binary_search(some_.begin(), some_.end(), i); });
   }
@@ -120,11 +120,11 @@ private:
 
 void checkSurface(const Positions& points, const Options& options, const Surface& result) {
   if (!result.consolidation) {
-    const std::string fault = stress::faultOf(points, options, result);
+    const std::string fault = faultOf(points, options, result);
     if (!fault.empty())
       fuzz::finding(fault);
   } else {
-    const std::string fault = stress::faultOfTopology(result);
+    const std::string fault = faultOfTopology(result);
     if (!fault.empty())
       fuzz::finding(fault);
     require(result.points.allFinite() &&
@@ -142,7 +142,7 @@ void checkSurface(const Positions& points, const Options& options, const Surface
           "there is no history without a request");
   for (const HistoryFrame& frame : result.history.frames)
     require(frame.sphere.cols() == static_cast<Eigen::Index>(result.history.vertices.size()) &&
-                stress::areUnitVectors(frame.sphere),
+                areUnitVectors(frame.sphere),
             "a frame of the history is of unit vectors");
   for (const auto& pair : result.self_intersections)
     require(0 <= pair[0] && pair[0] < pair[1] && pair[1] < result.triangles.cols(),
@@ -150,12 +150,12 @@ void checkSurface(const Positions& points, const Options& options, const Surface
 }
 
 void checkResult(const Positions& points, const Options& options, const Result& result) {
-  const std::string fault = stress::faultOfLists(points, options, result);
+  const std::string fault = faultOfLists(points, options, result);
   if (!fault.empty())
     fuzz::finding(fault);
   for (const Surface& surface : result.surfaces) {
     require(options.parts != PartsMode::Each ||
-                stress::firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=
+                firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=
                     static_cast<std::size_t>(options.min_points),
             "a part has its minimum number of distinct points");
     checkSurface(points, options, surface);
@@ -206,10 +206,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (ending == Ending::ComputeError)
     fuzz::finding("on valid input: " + message);
   const bool is_right = !search.wasBad() && areRight(options);
-  if (ending == Ending::InvalidInput && is_right && stress::mustBeMeshed(points, options))
+  if (ending == Ending::InvalidInput && is_right && mustBeMeshed(points, options))
     fuzz::finding("valid input is rejected: " + message);
   if (ending == Ending::Answer) {
-    require(is_right && stress::canBeMeshed(points, options),
+    require(is_right && canBeMeshed(points, options),
             "points, answers and options that are not valid are rejected");
     checkResult(points, options, result);
   }

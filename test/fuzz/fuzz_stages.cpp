@@ -29,7 +29,7 @@ Positions normalized(const Positions& points) {
 /// A mesh on points on the sphere, sometimes spoiled.
 Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
   Triangles triangles(3, 0);
-  if (sphere.cols() >= 4 && stress::areUnitVectors(sphere))
+  if (sphere.cols() >= 4 && areUnitVectors(sphere))
     triangles = triangulateSphere(sphere);
   const auto n = static_cast<std::size_t>(sphere.cols());
   const std::uint8_t how = bytes.byte();
@@ -84,7 +84,7 @@ void fuzzOutliers(Bytes& bytes, const Positions& points, Watch& watch) {
   const auto n = static_cast<std::size_t>(points.cols());
   const auto are_points = [&](const std::vector<Index>& some) {
     return std::is_sorted(some.begin(), some.end()) &&
-           stress::areLists({{0, some.size()}, some}, 1, n);
+           areLists({{0, some.size()}, some}, 1, n);
   };
   Options options;
   static_cast<Execution&>(options) = executionFrom(bytes, watch);
@@ -148,7 +148,7 @@ Mapped mapFrom(Bytes& bytes, const Positions& points, Watch& watch) {
   if (bytes.oneIn(16) && start.cols() > 0)
     mapped.sphere(bytes.byte() % 3, bytes.byte() % start.cols()) = bytes.real();
   const SphereMap map = computeSphereMap(points, mapped.triangles, mapped.sphere, options);
-  require(map.sphere.cols() == points.cols() && stress::areUnitVectors(map.sphere),
+  require(map.sphere.cols() == points.cols() && areUnitVectors(map.sphere),
           "the map is of unit vectors");
   require(map.distortion.flipped_triangles == 0, "the map is one to one");
   if (!bytes.oneIn(8))  // else the start, which may be folded

@@ -4,11 +4,12 @@
 #include "spherical_param/reconstruct.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
+#include <boost/multiprecision/eigen.hpp>
 
 #include <tuple>
 
 /// What reconstruct() guarantees, decided in exact arithmetic and without the library.
-namespace stress {
+namespace fuzz {
 
 using namespace spherical_param;
 
@@ -22,38 +23,25 @@ inline std::map<Place, Index> firstAtPlaces(const Positions& points) {
   return first;
 }
 
-/// Whether finite points lie in one plane: in integers of any size.
+/// Whether finite points lie in one plane: in fractions of any size.
 inline bool liesInPlane(const Positions& points) {
-  using Integer = boost::multiprecision::cpp_int;
-  using Vector = std::array<Integer, 3>;
-  // In units of the least double.
-  const auto integer = [](double x) {
-    int exponent = 0;
-    const double mantissa = std::frexp(x, &exponent);
-    const int shift = exponent - 53 + 1074;
-    const Integer value = static_cast<std::int64_t>(std::ldexp(mantissa, 53));
-    const Integer power = Integer(1) << static_cast<unsigned>(std::abs(shift));
-    return shift >= 0 ? Integer(value * power) : Integer(value / power);
-  };
-  std::vector<Vector> vectors;
-  for (Eigen::Index i = 1; i < points.cols(); ++i)
-    vectors.push_back({integer(points(0, i)) - integer(points(0, 0)),
-                       integer(points(1, i)) - integer(points(1, 0)),
-                       integer(points(2, i)) - integer(points(2, 0))});
-  const auto cross = [](const Vector& a, const Vector& b) {
-    return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
-  const auto is_zero = [](const Vector& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; };
-  const auto first = std::find_if_not(vectors.begin(), vectors.end(), is_zero);
-  if (first == vectors.end())
-    return true;
-  Vector normal{};
-  for (const Vector& v : vectors)
-    if (is_zero(normal))
-      normal = cross(*first, v);
-  return std::all_of(vectors.begin(), vectors.end(), [&](const Vector& v) {
-    return v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2] == 0;
-  });
+  using Exact = boost::multiprecision::number<boost::multiprecision::cpp_rational_backend,
+                                              boost::multiprecision::et_off>;
+  using Vector = Eigen::Matrix<Exact, 3, 1>;
+  const Vector zero = Vector::Zero();
+  const Vector origin = points.col(0).cast<Exact>();
+  Vector direction = zero;
+  Vector normal = zero;
+  for (const auto& point : points.colwise()) {
+    const Vector offset = point.cast<Exact>() - origin;
+    if (direction == zero)
+      direction = offset;
+    else if (normal == zero)
+      normal = direction.cross(offset);
+    else if (normal.dot(offset) != 0)
+      return false;
+  }
+  return true;
 }
 
 inline Positions finiteOf(const Positions& points) {
@@ -116,17 +104,15 @@ inline std::string faultOfTopology(const Surface& result) {
     return "the boundary is not of loops that are apart";
   // With a cone over each boundary loop it is closed.
   Index loops = 0;
-  std::vector<std::array<Index, 3>> cones;
+  std::vector<Index> corners(result.triangles.data(),
+                             result.triangles.data() + result.triangles.size());
   for (const std::vector<Index>& loop : *boundary) {
     for (std::size_t i = 0; i < loop.size(); ++i)
-      cones.push_back({loop[(i + 1) % loop.size()], loop[i], n + loops});
+      corners.insert(corners.end(), {loop[(i + 1) % loop.size()], loop[i], n + loops});
     ++loops;
   }
-  Triangles closed(3, result.triangles.cols() + static_cast<Eigen::Index>(cones.size()));
-  closed.leftCols(result.triangles.cols()) = result.triangles;
-  for (std::size_t i = 0; i < cones.size(); ++i)
-    closed.col(result.triangles.cols() + static_cast<Eigen::Index>(i)) << cones[i][0], cones[i][1],
-        cones[i][2];
+  const Triangles closed =
+      Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
   const auto pieces = static_cast<Index>(result.topology.components);
   if (static_cast<std::size_t>(loops) != result.boundary.size() || !result.topology.genus ||
       !test::isSurfaceOverAll(closed, n + loops, static_cast<Index>(*result.topology.genus),
@@ -219,34 +205,4 @@ inline std::string faultOfLists(const Positions& points, const Options& options,
   return "";
 }
 
-/// The arrays and numbers of a result bit by bit, to compare results.
-inline std::string bytesOf(const Result& result) {
-  std::string bytes;
-  const auto add = [&bytes](const auto& array) {
-    const auto count = static_cast<std::size_t>(array.size());
-    bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-    bytes.append(reinterpret_cast<const char*>(array.data()), count * sizeof *array.data());
-  };
-  for (const Surface& surface : result.surfaces) {
-    add(surface.triangles);
-    add(surface.sphere);
-    add(surface.points);
-    add(surface.inputs);
-    add(surface.vertex_of_input);
-    add(surface.input_of_vertex);
-    add(surface.vertex_residuals);
-    add(surface.self_intersections);
-    add(surface.embedding.residuals);
-    add(std::array{surface.measures.volume, surface.measures.area, surface.embedding.residual,
-                   surface.smoothing ? surface.smoothing->volume_after : 0.0});
-  }
-  add(result.left_out.outliers);
-  add(result.left_out.other_parts);
-  add(result.left_out.unmeshed);
-  add(result.verdict);
-  for (const Finding& finding : result.findings)
-    add(finding.text);
-  return bytes;
-}
-
-}  // namespace stress
+}  // namespace fuzz

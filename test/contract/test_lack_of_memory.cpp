@@ -1,4 +1,4 @@
-// Lack of memory comes out as std::bad_alloc. Full disks and killed tools are in test/tools.
+// A lack of memory comes out as std::bad_alloc. Full disks and killed tools are in test/tools.
 
 #include "helpers.h"
 #include "spherical_param/reconstruct.h"
@@ -40,7 +40,7 @@ namespace {
 
 using namespace spherical_param;
 
-TEST(Guarantees, BadAllocIsPassedOnFromEveryAllocation) {
+TEST(LackOfMemory, BadAllocIsPassedOnFromEveryAllocation) {
   const Positions points = test::spiralSphere(5000);  // enough for several threads
   Options options;
   options.threads = 2;
