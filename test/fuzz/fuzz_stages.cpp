@@ -1,64 +1,31 @@
-// Every public function but reconstruct(): the first byte picks one. It is given any arguments. The
-// watch is the callback and has to outlive the call.
+// The public functions of the table in test/contract, each with any arguments: the first byte picks
+// one. The watch is the callback and has to outlive the call.
 
+#include "contract/public_functions.h"
 #include "embedding.h"
 #include "fuzz_input.h"
-#include "paper_method.h"
-#include "spherical_param/map/handle_cutting.h"
-#include "spherical_param/map/morphing.h"
-#include "spherical_param/map/resampling.h"
-#include "spherical_param/map/sphere_map.h"
-#include "spherical_param/map/sphere_surface.h"
-#include "spherical_param/map/spherical_harmonics.h"
-#include "spherical_param/map/texture_atlas.h"
-#include "spherical_param/mesh_measures.h"
-#include "spherical_param/mesh_topology.h"
-#include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_triangulation.h"
 
 namespace fuzz {
 namespace {
 
 using namespace spherical_param;
+using test::Inputs;
+using test::Mapped;
 
-/// Points on the sphere, unless they are not finite.
-Positions normalized(const Positions& points) {
-  return points.allFinite() ? internal::projectFromCentroid(points) : points;
-}
-
-/// A mesh on points on the sphere, sometimes spoiled.
-Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
-  Triangles triangles(3, 0);
-  if (sphere.cols() >= 4 && areUnitVectors(sphere))
-    triangles = triangulateSphere(sphere);
-  const auto n = static_cast<std::size_t>(sphere.cols());
+/// Changes some of the corners, seldom.
+void spoil(Bytes& bytes, Triangles& triangles, std::size_t n) {
   const std::uint8_t how = bytes.byte();
-  if (how < 160)
-    return triangles;
-  if (how < 200) {  // some other corners
-    for (std::size_t i = bytes.below(8); i > 0 && triangles.cols() > 0; --i)
+  if (how < 160 || triangles.cols() == 0)
+    return;
+  if (how < 220)
+    for (std::size_t i = bytes.below(8); i > 0; --i)
       triangles.data()[bytes.raw<std::uint16_t>() % triangles.size()] =
           bytes.index(n, how % 2 == 0);
-  } else if (how < 220 && triangles.cols() > 0) {  // an open one
-    const Eigen::Index left = triangles.cols() - 1 - bytes.byte() % triangles.cols();
-    triangles.conservativeResize(Eigen::NoChange, left);
-  } else if (how < 235) {
+  else if (how < 235)  // an opening
+    triangles.conservativeResize(Eigen::NoChange,
+                                 triangles.cols() - 1 - bytes.byte() % triangles.cols());
+  else
     flipOrientation(triangles);
-  } else {
-    triangles.resize(3, bytes.byte() % 64);
-    for (Index& corner : triangles.reshaped())
-      corner = bytes.index(n, how % 2 == 0);
-  }
-  return triangles;
-}
-
-/// Threads from bytes, and the watch as the callback.
-Execution executionFrom(Bytes& bytes, Watch& watch) {
-  Execution execution;
-  execution.threads = bytes.integerOr(0);
-  if (watch.listens())
-    execution.progress = std::ref(watch);
-  return execution;
 }
 
 /// Limits the time of the work; a value that is out of range is kept.
@@ -66,255 +33,76 @@ int atMost(int most, int value, int range) {
   return value > most && value <= range ? most : value;
 }
 
-bool isSphere(const Triangles& triangles, const Positions& points) {
-  return test::isSphereOverAll(triangles, static_cast<Index>(points.cols()));
+/// A mesh of points with a map, either of which may be wrong.
+Mapped mappedFrom(Bytes& bytes, const Positions& points) {
+  Mapped mesh{points, {}, points.allFinite() ? internal::projectFromCentroid(points) : points};
+  if (points.cols() >= 4 && areUnitVectors(mesh.sphere))
+    mesh.triangles = triangulateSphere(mesh.sphere);
+  spoil(bytes, mesh.triangles, static_cast<std::size_t>(points.cols()));
+  if (bytes.oneIn(16) && points.cols() > 0)
+    mesh.sphere(bytes.byte() % 3, bytes.byte() % points.cols()) = bytes.real();
+  if (!bytes.oneIn(4))  // else the start, which may be folded
+    try {
+      mesh.sphere = computeSphereMap(points, mesh.triangles, mesh.sphere, {{}, 0.85, 2}).sphere;
+    } catch (const InvalidInput&) {
+      // The function under test is to refuse it, too.
+    }
+  return mesh;
 }
 
-void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
-  const bool is_by_qhull = bytes.oneIn(2);
-  const bool is_raw = bytes.oneIn(8);
-  const Positions sphere = is_raw ? points : normalized(points);
-  const Execution execution = executionFrom(bytes, watch);
-  const Triangles triangles = is_by_qhull ? internal::paper::convexHull(sphere, execution)
-                                          : triangulateSphere(sphere, execution);
-  require(isSphere(triangles, sphere), "the triangulation is a sphere over all points");
-}
-
-void fuzzOutliers(Bytes& bytes, const Positions& points, Watch& watch) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  const auto are_points = [&](const std::vector<Index>& some) {
-    return std::is_sorted(some.begin(), some.end()) &&
-           areLists({{0, some.size()}, some}, 1, n);
-  };
-  Options options;
-  static_cast<Execution&>(options) = executionFrom(bytes, watch);
-  options.outliers = bytes.choice<OutlierMode>(4);
-  options.outlier_sigma = bytes.realOr(4.0);
-  options.min_points = bytes.integerOr(8);
-  const std::vector<Index> outliers = findOutliers(points, options);
-  require(are_points(outliers), "outliers are points, in order");
-  for (const std::vector<Index>& part : findParts(points, options)) {
-    require(are_points(part), "parts are points, in order");
-    for (const Index i : part)
-      require(!std::binary_search(outliers.begin(), outliers.end(), i), "no outlier is in a part");
-  }
-}
-
-/// Whether no coordinate has digits below 1e-100 of the largest one: intersections are then exact.
-bool haveExactProducts(const Positions& points) {
-  const double largest = points.size() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
-  return (points.array() == 0.0 ||
-          points.array().abs() * std::numeric_limits<double>::epsilon() / 2.0 >= 1e-100 * largest)
-      .all();
-}
-
-void fuzzChecks(Bytes& bytes, const Positions& points, Watch& watch) {
-  const Triangles triangles = trianglesFrom(bytes, normalized(points));
-  const auto n = static_cast<std::size_t>(points.cols());
-  const MeshTopology topology = checkTopology(triangles, n, bytes.integerOr(0));
-  require(topology.isSphere() == isSphere(triangles, points), "the mesh is a sphere or not");
-  measureMesh(points, triangles, bytes.integerOr(0));
-  signedVolume(points, triangles);
-  surfaceArea(points, triangles);
-  areaWeightedNormals(points, triangles);
-  Execution execution = executionFrom(bytes, watch);
-  const auto pairs = findSelfIntersections(points, triangles, execution);
-  require(std::is_sorted(pairs.begin(), pairs.end()), "pairs are in order");
-  std::vector<Index> of;
-  for (std::size_t i = bytes.below(8); i > 0; --i)
-    of.push_back(bytes.index(static_cast<std::size_t>(triangles.cols())));
-  execution.progress = {};
-  const auto some = findSelfIntersectionsOf(points, triangles, of, execution);
-  std::vector<std::array<Index, 2>> expected;
-  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(expected), [&](const auto& pair) {
-    return std::find_first_of(of.begin(), of.end(), pair.begin(), pair.end()) != of.end();
-  });
-  require(some == expected || !haveExactProducts(points),
-          "the pairs of some triangles are those among all");
-}
-
-struct Mapped {
-  Triangles triangles;
-  Positions sphere;
-};
-
-Mapped mapFrom(Bytes& bytes, const Positions& points, Watch& watch) {
-  const Positions start = normalized(points);
-  Mapped mapped{trianglesFrom(bytes, start), start};
-  SphereMapOptions options;
-  options.area_weight = bytes.realOr(0.85);
-  options.sweeps = atMost(20, bytes.integerOr(3), 1000);
-  static_cast<Execution&>(options) = executionFrom(bytes, watch);
-  if (bytes.oneIn(16) && start.cols() > 0)
-    mapped.sphere(bytes.byte() % 3, bytes.byte() % start.cols()) = bytes.real();
-  const SphereMap map = computeSphereMap(points, mapped.triangles, mapped.sphere, options);
-  require(map.sphere.cols() == points.cols() && areUnitVectors(map.sphere),
-          "the map is of unit vectors");
-  require(map.distortion.flipped_triangles == 0, "the map is one to one");
-  if (!bytes.oneIn(8))  // else the start, which may be folded
-    mapped.sphere = map.sphere;
-  return mapped;
-}
-
-SphereSurface surfaceFrom(Bytes& bytes, const Positions& points, Watch& watch) {
-  const Mapped mapped = mapFrom(bytes, points, watch);
-  SphereSurfaceOptions options;
-  options.fit = bytes.choice<SurfaceFit>(2);
-  options.threads = bytes.integerOr(0);
-  return {points, mapped.triangles, mapped.sphere, options};
-}
-
-void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool flips) {
-  const auto grid = bytes.choice<SphereGrid>(2);
-  GridSphere directions = makeGridSphere(grid, atMost(4, bytes.integerOr(2), 1 << 15));
-  if (bytes.oneIn(8))
-    directions.triangles = trianglesFrom(bytes, directions.directions);
-  ResampledMesh mesh = resampleSurface(surface, directions);
-  if (bytes.oneIn(8))
-    mesh.points(bytes.byte() % 3, bytes.byte() % mesh.points.cols()) = bytes.real();
-  untangle(surface, mesh, {flips, bytes.integerOr(0)});
-  require(isSphere(mesh.triangles, mesh.points) || !isSphere(directions.triangles, mesh.points),
-          "the remeshed surface is a sphere");
-  geometryImageOfMesh(mesh);
-}
-
-void fuzzCuts(Bytes& bytes) {
-  const int rings = 3 + bytes.byte() % 8;
-  const int around = 3 + bytes.byte() % 8;
-  Triangles triangles = test::torusTriangles(rings, around);
-  Positions points(3, rings * around);
-  for (double& x : points.reshaped())
+Inputs inputsFrom(Bytes& bytes, const Positions& points) {
+  static const Inputs valid(20);
+  Inputs in = valid;
+  const Mapped mesh = mappedFrom(bytes, points);
+  const auto count = static_cast<std::size_t>(mesh.triangles.cols());
+  in.size = static_cast<Index>(points.cols());
+  in.cloud = in.scattered = points;
+  in.directions = bytes.oneIn(8) ? points : mesh.sphere;
+  in.triangles = in.damaged = mesh.triangles;
+  in.knot = {points, mesh.triangles};
+  in.bumps = in.few = mesh;
+  in.many = mappedFrom(bytes, pointsFrom(bytes).leftCols(std::min<Eigen::Index>(points.cols(), 4)));
+  for (double& x : in.handle.points.reshaped())
     x = bytes.byte();
-  if (bytes.oneIn(8))
-    triangles.data()[bytes.byte() % triangles.size()] = bytes.byte() % points.cols();
-  if (bytes.oneIn(2))  // an opening
-    triangles = Triangles(triangles.rightCols(triangles.cols() - 1 - bytes.byte() % 2));
-  const CutMesh cut = cutHandles(points, triangles);
-  require(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface(),
-          "a cut torus is an open surface");
-  const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
-  TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere, {bytes.choice<SphereChart>(3)});
-  CutMesh spoiled = cut;
-  const std::uint8_t fault = bytes.byte();
-  if (fault == 1)
-    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
-  else if (fault == 2)
-    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.byte();
-  else if (fault == 3)
-    spoiled.vertex_of[bytes.byte() % spoiled.vertex_of.size()] = bytes.byte();
-  else if (fault == 4)
-    atlas.source.resize(bytes.byte());
-  atlas = joinCuts(std::move(atlas), spoiled);
-  const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
-  require(fault > 1 || (topology.isSurface() && topology.genus == 1), "joined, it is a torus");
-}
 
-void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
-  const SphereSurface surface = surfaceFrom(bytes, points, watch);
-  const Eigen::Vector3d direction(bytes.real(), bytes.real(), bytes.real());
-  const int how = bytes.byte() % 8;
-  if (how == 0) {
-    const SphereLocation location = surface.locate(direction);
-    require(location.triangle >= 0 && location.triangle < surface.triangles().cols() &&
-                location.weights.minCoeff() >= 0.0 && std::abs(location.weights.sum() - 1.0) < 1e-9,
-            "a direction is in a triangle");
-    surface.evaluate(location);
-  } else if (how == 1) {
-    SphereLocation location;
-    location.triangle = bytes.index(static_cast<std::size_t>(surface.triangles().cols()));
-    location.weights = direction;
-    surface.evaluate(location);
-  } else if (how == 2) {
-    computeSphericalHarmonics(surface, atMost(8, bytes.integer(), 512), bytes.integerOr(0));
-  } else if (how == 3) {
-    const SurfacePoints samples = sampleEvenly(surface, bytes.byte(), bytes.byte());
-    require(samples.locations.size() == static_cast<std::size_t>(samples.points.cols()),
-            "each sample has a place");
-  } else if (how == 4) {
-    const int side = atMost(17, bytes.integer() | 1, 16385);
-    meshOfGeometryImage(makeGeometryImage(surface, side));
-  } else {
-    fuzzResampling(bytes, surface, how == 6);
-  }
-}
-
-void fuzzTexture(Bytes& bytes, const Positions& points, Watch& watch) {
-  if (bytes.oneIn(4)) {
-    fuzzCuts(bytes);
-    return;
-  }
-  const Mapped mapped = mapFrom(bytes, points, watch);
-  TextureAtlasOptions options;
-  options.chart = bytes.choice<SphereChart>(3);
-  options.margin = bytes.realOr(1.0 / 64);
-  const Eigen::Vector3d direction(bytes.real(), bytes.real(), bytes.real());
-  TextureAtlas atlas = makeTextureAtlas(mapped.triangles, mapped.sphere, options);
-  require(atlas.coordinates.minCoeff() >= 0.0 && atlas.coordinates.maxCoeff() <= 1.0,
-          "texture coordinates are in [0, 1]");
-  const std::uint8_t fault = bytes.byte();
-  if (fault == 1)
-    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.raw<Index>();
-  else if (fault == 2)
-    atlas.coordinate_triangles.data()[bytes.byte() % atlas.coordinate_triangles.size()] =
-        bytes.raw<Index>();
-  else if (fault == 3)
-    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
-  else if (fault == 4)
-    atlas.coordinates(0, bytes.byte() % atlas.coordinates.cols()) = bytes.real();
-  else if (fault == 5)
-    atlas.chart = static_cast<SphereChart>(bytes.integer());
-  BakeOptions bake;
-  bake.height = atMost(40, bytes.integerOr(16), 16384);
-  bake.gutter = bytes.integerOr(2);
-  bake.threads = bytes.integerOr(0);
-  if (bytes.oneIn(2)) {
-    Positions colors = (points.array() - points.minCoeff()).matrix();
-    colors *= 255.0 / std::max(colors.maxCoeff(), 1e-300);
-    bakeColors(atlas, bytes.oneIn(2) ? points : colors, bake);
-  } else {
-    bakeCheckerboard(atlas, bytes.oneIn(8) ? points : mapped.sphere, bytes.integerOr(8), bake);
-  }
-  const Eigen::Vector2d place = chartCoordinates(options, direction);
-  require(place.minCoeff() >= 0.0 && place.maxCoeff() <= 1.0, "a direction is in the chart");
-}
-
-void fuzzMorph(Bytes& bytes, const Positions& points, Watch& watch) {
-  const Eigen::Index few = bytes.byte() % 16 + 4;
-  Bytes of_second = bytes;
-  Positions second = pointsFrom(of_second);
-  second.conservativeResize(Eigen::NoChange, std::min(second.cols(), few));
-  Bytes silence(nullptr, 0);
-  Watch nobody(silence);
-  const SphereSurface from = surfaceFrom(bytes, points, nobody);
-  const SphereSurface to = surfaceFrom(bytes, second, nobody);
-  MorphOptions options;
-  options.align = bytes.oneIn(32);  // as long as all the rest together
+  in.options.outliers = bytes.choice<OutlierMode>(4);
+  in.options.outlier_sigma = bytes.realOr(4.0);
+  in.options.min_points = bytes.integerOr(8);
+  in.chosen.clear();
+  for (std::size_t i = bytes.below(8); i > 0; --i)
+    in.chosen.push_back(bytes.index(count));
+  in.map.area_weight = bytes.realOr(0.85);
+  in.map.sweeps = atMost(20, bytes.integerOr(3), 1000);
+  in.fit = bytes.choice<SurfaceFit>(2);
+  in.morph.align = bytes.oneIn(32);  // as long as all the rest together
+  in.morph.pairs.clear();
   for (std::size_t i = bytes.below(4); i > 0; --i)
-    options.pairs.push_back({bytes.index(static_cast<std::size_t>(points.cols())),
-                             bytes.index(static_cast<std::size_t>(second.cols()))});
-  options.connectivity = bytes.choice<MorphConnectivity>(2);
-  options.samples = bytes.oneIn(8) ? bytes.raw<std::size_t>() : 12U + bytes.byte();
-  if (options.samples > 1000 && options.samples <= std::size_t{1} << 24)
-    options.samples = 1000;
-  static_cast<Execution&>(options) = executionFrom(bytes, watch);
-  const MorphResult result = morphSurfaces(from, to, options);
-  require(isSphere(result.triangles, result.first) && result.second.cols() == result.first.cols(),
-          "the morph is a sphere");
-  inBetween(result, bytes.real());
-}
-
-void fuzzHarmonics(Bytes& bytes, const Positions& points, Watch&) {
-  SphericalHarmonics harmonics;
-  harmonics.degree = atMost(8, bytes.integer(), 512);
-  const int terms = harmonics.degree >= 0 && harmonics.degree < 512
-                        ? (harmonics.degree + 1) * (harmonics.degree + 1)
-                        : 1;
-  harmonics.coefficients =
-      Positions::Constant(3, bytes.oneIn(4) ? bytes.byte() : terms, bytes.real());
-  require(evaluateSphericalHarmonics(harmonics, points, bytes.integerOr(0)).cols() == points.cols(),
-          "each direction has a point");
-  if (points.cols() > 0)
-    sphericalHarmonicsAt(points.col(0), atMost(30, bytes.integer(), 512));
+    in.morph.pairs.push_back({bytes.index(static_cast<std::size_t>(points.cols())),
+                              bytes.index(static_cast<std::size_t>(in.many.points.cols()))});
+  in.morph.connectivity = bytes.choice<MorphConnectivity>(2);
+  in.morph.samples = bytes.oneIn(8) ? bytes.raw<std::size_t>() : 12U + bytes.byte();
+  if (in.morph.samples > 1000 && in.morph.samples <= std::size_t{1} << 24)
+    in.morph.samples = 1000;
+  in.grid = bytes.choice<SphereGrid>(2);
+  in.frequency = atMost(4, bytes.integerOr(2), 1 << 15);
+  in.flips = bytes.oneIn(2);
+  in.side = atMost(17, bytes.integerOr(5) | 1, 16385);
+  in.samples = bytes.byte();
+  in.degree = atMost(8, bytes.integerOr(4), 512);
+  in.chart_margin = bytes.realOr(1.0 / 64);
+  in.bake = {atMost(40, bytes.integerOr(16), 16384), bytes.integerOr(2), 0};
+  in.cells = bytes.integerOr(8);
+  in.direction = {bytes.real(), bytes.real(), bytes.real()};
+  in.location = {bytes.index(count), {bytes.real(), bytes.real(), bytes.real()}};
+  in.time = bytes.real();
+  if (bytes.oneIn(4)) {
+    in.spoil_numbers = [&bytes](Eigen::Ref<Eigen::MatrixXd> numbers) {
+      if (bytes.oneIn(2) && numbers.size() > 0)
+        numbers(bytes.byte() % numbers.rows(), bytes.byte() % numbers.cols()) = bytes.real();
+    };
+    in.spoil_triangles = [&bytes](Triangles& triangles) { spoil(bytes, triangles, 64); };
+  }
+  return in;
 }
 
 }  // namespace
@@ -322,19 +110,22 @@ void fuzzHarmonics(Bytes& bytes, const Positions& points, Watch&) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fuzz;
-  using Call = void (*)(Bytes&, const Positions&, Watch&);
-  constexpr std::array<Call, 7> calls{fuzzTriangulation, fuzzOutliers, fuzzChecks,   fuzzSurface,
-                                      fuzzTexture,       fuzzMorph,    fuzzHarmonics};
+  static const std::vector<test::Function> functions =
+      test::functionsOf({test::addFunctionsOfTheCore, test::addMaps});
   Bytes bytes(data, size);
-  const std::uint8_t which = bytes.byte();
+  const test::Function& function = functions[bytes.byte() % functions.size()];
   Watch watch(bytes);
   const std::size_t before = bytes.byte();
   // The points come last: a change of them moves no other byte.
   const std::size_t head = std::min<std::size_t>(size, 3 + 8 + before % 64);
   Bytes of_points(data + head, size - head);
   const Positions points = pointsFrom(of_points);
+  Execution execution;
+  execution.threads = bytes.integerOr(0);
+  if (watch.listens())
+    execution.progress = std::ref(watch);
   std::string message;
   endingOf(
-      watch, [&] { calls[which % calls.size()](bytes, points, watch); }, message);
+      watch, [&] { function.run(inputsFrom(bytes, points), execution); }, message);
   return 0;
 }
