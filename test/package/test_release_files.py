@@ -48,12 +48,14 @@ class ReleaseFiles(unittest.TestCase):
         run = set(re.findall(r"\w+", runs_all.replace("--quick", "")))
         scripts = {path.stem for path in (ROOT / "tools").glob("test*.sh")} - {"test_all"} | {"stress"}
         self.assertEqual(run, scripts)
-        for workflow, command in (("ci", ".ci/run"), ("weekly", "tools/test_all.sh")):
-            jobs = yaml.safe_load((ROOT / f".github/workflows/{workflow}.yml").read_text())["jobs"]
-            self.assertIn(command, [line for step in jobs["debian"]["steps"] for line in step.get("run", "").split("\n")])
-        release = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text())["jobs"]
-        self.assertIn("tests", release["release"]["needs"])
-        self.assertEqual(release["tests"]["uses"], "./.github/workflows/weekly.yml")
+        def job(workflow, name):
+            return yaml.safe_load((ROOT / f".github/workflows/{workflow}.yml").read_text())["jobs"][name]
+
+        weekly = [step.get("run", "") for step in job("weekly", "debian")["steps"]]
+        self.assertIn("${{ inputs.script || 'tools/test_all.sh' }}", "".join(weekly))
+        self.assertEqual(job("ci", "debian"), {"uses": "./.github/workflows/weekly.yml", "with": {"script": ".ci/run"}})
+        self.assertIn("tests", job("release", "release")["needs"])
+        self.assertEqual(job("release", "tests")["uses"], "./.github/workflows/weekly.yml")
 
 
 if __name__ == "__main__":
