@@ -4,10 +4,7 @@
 
 namespace {
 
-using namespace spherical_param;
-using fuzz::Bytes;
-using fuzz::Ending;
-using fuzz::require;
+using namespace fuzz;
 
 Options optionsFrom(Bytes& bytes) {
   Options options;
@@ -61,7 +58,7 @@ bool areRight(const Options& options) {
 class Search {
 public:
   Search(Bytes bytes, const Positions& points)
-      : bytes_(bytes), points_(points), tamed_(fuzz::tamed(points)) {
+      : bytes_(bytes), points_(points), tamed_(tamed(points)) {
     const std::uint8_t how = bytes.byte();
     is_right_ = how < 128;
     is_in_range_ = how < 200;
@@ -84,8 +81,8 @@ public:
         return right(queries, count);
       has_thrown_ = throws_;
       if (throws_)
-        throw fuzz::kFaultOfSearch;
-      NeighborLists lists = fuzz::arbitraryLists(
+        throw kFaultOfSearch;
+      NeighborLists lists = arbitraryLists(
           bytes_, queries.size(),
           is_in_range_ ? some_.size() : static_cast<std::size_t>(points_.cols()), is_in_range_);
       if (is_in_range_)
@@ -122,11 +119,11 @@ void checkSurface(const Positions& points, const Options& options, const Surface
   if (!result.consolidation) {
     const std::string fault = faultOf(points, options, result);
     if (!fault.empty())
-      fuzz::finding(fault);
+      finding(fault);
   } else {
     const std::string fault = faultOfTopology(result);
     if (!fault.empty())
-      fuzz::finding(fault);
+      finding(fault);
     require(result.points.allFinite() &&
                 result.points.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the points are as many finite ones as there are vertices");
@@ -152,7 +149,7 @@ void checkSurface(const Positions& points, const Options& options, const Surface
 void checkResult(const Positions& points, const Options& options, const Result& result) {
   const std::string fault = faultOfLists(points, options, result);
   if (!fault.empty())
-    fuzz::finding(fault);
+    finding(fault);
   for (const Surface& surface : result.surfaces) {
     require(options.parts != PartsMode::Each ||
                 firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=
@@ -168,10 +165,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes(data, size);
   const std::uint8_t way = bytes.byte();
   Options options = optionsFrom(bytes);
-  fuzz::Watch watch(bytes);
+  Watch watch(bytes);
   const Bytes of_search = bytes;
   bytes.raw<std::uint16_t>();
-  const Positions points = fuzz::pointsFrom(bytes);
+  const Positions points = pointsFrom(bytes);
 
   // Valid, but too long to wait for.
   if (options.paper.max_iterations > 3000 || options.embedding.starts > 20 ||
@@ -195,7 +192,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     search_of = std::ref(search);
   Result result;
   std::string message;
-  const Ending ending = fuzz::endingOf(
+  const Ending ending = endingOf(
       watch, [&] { result = reconstruct(points, options, search_of); }, message);
   if (ending == Ending::AsTheWatchAsked)
     return 0;
@@ -204,10 +201,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (ending == Ending::FaultOfSearch)
     return 0;
   if (ending == Ending::ComputeError)
-    fuzz::finding("on valid input: " + message);
+    finding("on valid input: " + message);
   const bool is_right = !search.wasBad() && areRight(options);
   if (ending == Ending::InvalidInput && is_right && mustBeMeshed(points, options))
-    fuzz::finding("valid input is rejected: " + message);
+    finding("valid input is rejected: " + message);
   if (ending == Ending::Answer) {
     require(is_right && canBeMeshed(points, options),
             "points, answers and options that are not valid are rejected");
