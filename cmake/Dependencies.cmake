@@ -1,4 +1,4 @@
-# What the libraries build against; what tools and tests need more is found there. doc/reference.md lists
+# What the libraries build against. Tools and tests find what else they need. doc/reference.md lists
 # the bounds of their versions.
 include(${PROJECT_SOURCE_DIR}/cmake/RequireVersion.cmake)
 find_package(Eigen3 QUIET NO_MODULE)
@@ -11,7 +11,7 @@ include(${PROJECT_SOURCE_DIR}/cmake/qhull.cmake)
 if(NOT TARGET Qhull::qhull_r)
   message(FATAL_ERROR "qhull (libqhull_r) was not found: install libqhull-dev")
 endif()
-# The first with the reentrant library is 2015.0, alias 7.0; installed alone, it tells no version.
+# The first with the reentrant library is 2015.0, alias 7.0. Without its CMake package, the version is unknown.
 spherical_param_require_version(qhull "${Qhull_VERSION}" 7.0 libqhull-dev)
 
 # FLANN's headers use lz4 on some systems without saying so.

@@ -7,7 +7,7 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcl_spherical_param)
 
-# One export set and install component for each: who asks for core only must not need PCL.
+# One export set and install component for each: a user of core alone must not need PCL.
 set(spherical_param_components core)
 if(SPHERICAL_PARAM_BUILD_PCL)
   list(APPEND spherical_param_components pcl)
@@ -51,7 +51,7 @@ install(FILES
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/qhull.cmake
   DESTINATION ${package_dir} RENAME pcl_spherical_param-qhull.cmake COMPONENT core_dev)
 
-# pkg-config: the prefix is told from where the file lies, so that the tree may be moved.
+# pkg-config: the prefix is relative to the file, so that the tree may be moved.
 foreach(kind LIB INCLUDE)
   if(IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
     set(PKGCONFIG_${kind}DIR "${CMAKE_INSTALL_${kind}DIR}")

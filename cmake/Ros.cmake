@@ -1,7 +1,7 @@
 # Which ROS the nodes are built for, in SPHERICAL_PARAM_ROS_VERSION: 1, 2 or none (empty).
 #
-# SPHERICAL_PARAM_BUILD_ROS: AUTO asks for it only where catkin or colcon build this project as a
-# package of ROS, and does without if its packages are missing; ON is told what is missing; OFF.
+# SPHERICAL_PARAM_BUILD_ROS: AUTO builds the nodes where catkin or colcon build this project as a package of ROS, unless
+# packages are missing; ON stops if packages are missing; OFF.
 set(SPHERICAL_PARAM_BUILD_ROS AUTO CACHE STRING "Build the nodes of ROS: ON, OFF or AUTO (by catkin and colcon)")
 set_property(CACHE SPHERICAL_PARAM_BUILD_ROS PROPERTY STRINGS AUTO ON OFF)
 set(SPHERICAL_PARAM_ROS_VERSION "")
@@ -12,8 +12,8 @@ set(ros1_packages message_generation diagnostic_updater dynamic_reconfigure geom
 set(ros2_packages diagnostic_msgs diagnostic_updater geometry_msgs pcl_conversions pcl_msgs rclcpp
                   rcl_interfaces sensor_msgs shape_msgs std_msgs visualization_msgs)
 
-# The packages among those that follow that are not there. What they set is lost with the function, and their
-# definitions as well: what is not of ROS is compiled as without it.
+# The packages in the list that are missing. The function keeps their variables to itself and takes back their compile
+# definitions, so that what does not use ROS is compiled as without it.
 function(spherical_param_missing_packages result)
   get_directory_property(definitions COMPILE_DEFINITIONS)
   set(missing "")
@@ -27,8 +27,8 @@ function(spherical_param_missing_packages result)
   set(${result} "${missing}" PARENT_SCOPE)
 endfunction()
 
-# Not so inside another package, which has fetched the library, and is the one that ROS knows. In the
-# one build of plain catkin_make all packages are below its top project, which lists them.
+# A package that has fetched this project builds it as a part of its own. catkin_make builds all packages below one top
+# project, which lists them.
 set(is_package_of_ros ${PROJECT_IS_TOP_LEVEL})
 get_filename_component(own_path ${PROJECT_SOURCE_DIR} REALPATH)
 foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)

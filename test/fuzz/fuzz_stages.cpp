@@ -28,6 +28,9 @@ void spoil(Bytes& bytes, Triangles& triangles, std::size_t n) {
     flipOrientation(triangles);
 }
 
+/// A morph of large shapes takes too long.
+constexpr Eigen::Index kMaxOfSecond = 20;
+
 /// Limits the time of the work; a value that is out of range is kept.
 int atMost(int most, int value, int range) {
   return value > most && value <= range ? most : value;
@@ -45,7 +48,7 @@ Mapped mappedFrom(Bytes& bytes, const Positions& points) {
     try {
       mesh.sphere = computeSphereMap(points, mesh.triangles, mesh.sphere, {{}, 0.85, 2}).sphere;
     } catch (const InvalidInput&) {
-      // The function under test is to refuse it, too.
+      // The function under test must refuse it, too.
     }
   return mesh;
 }
@@ -61,7 +64,10 @@ Inputs inputsFrom(Bytes& bytes, const Positions& points) {
   in.triangles = in.damaged = mesh.triangles;
   in.knot = {points, mesh.triangles};
   in.bumps = in.few = mesh;
-  in.many = mappedFrom(bytes, pointsFrom(bytes).leftCols(std::min<Eigen::Index>(points.cols(), 4)));
+  Bytes of_second = bytes;
+  const Positions second = pointsFrom(of_second);
+  in.many =
+      mappedFrom(of_second, second.leftCols(std::min<Eigen::Index>(second.cols(), kMaxOfSecond)));
   for (double& x : in.handle.points.reshaped())
     x = bytes.byte();
 
