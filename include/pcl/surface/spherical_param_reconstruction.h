@@ -22,29 +22,21 @@ namespace pcl {
  * certain stray points; on request as one closed surface of genus 0 through every distinct finite
  * point (setTopology()). It needs no normals, no radius and no tuning.
  *
- * The faces of a graph of local Delaunay neighbourhoods give a first connectivity. Where they have
- * defects, the graph is also embedded on the unit sphere from coarse to fine, so that limbs are
- * unfolded, towards a vanishing tangential Laplacian; the Delaunay triangulation of the embedded
- * points, which is their convex hull, is another one, whose decisions are exact. The mesh is
- * optimised on the points themselves, by moves that keep its topology, until no triangles
- * intersect, if possible (getSelfIntersections()); the points are never moved. getDiagnosis() lists
- * evidence against a closed surface without handles, and its place.
- *
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
- * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
- * k nearest neighbours, a damped iteration from the projection from the centroid, and qhull, is
- * setMethod(Method::Paper).
+ * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004; setMethod(Method::Paper)
+ * is their own. The mesh is optimised by moves that keep its topology, until no triangles
+ * intersect, if possible (getSelfIntersections()). By default, points are never moved.
+ * getDiagnosis() lists evidence against a closed surface without handles, and its place.
  *
  * Triangles face as the normals of the points do, if these have normals; else an open surface faces
- * the sensor (sensor_origin_; the origin in a cloud without rows is none if it is among the
- * points), terrain up, and any other outward.
+ * the sensor, terrain up, and any other outward. The sensor is at sensor_origin_; an origin of 0
+ * means no sensor if the cloud has no rows and 0 is within the box of the points.
  *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
  * are left out; exact duplicates become one vertex, at the first of them; both are counted.
- * Therefore points are not consolidated by default, unlike with the tools: the polygons of
- * consolidated points mean nothing on the input cloud. For a noisy scan, set
- * setConsolidation(ConsolidationMode::AsTopology).
+ * Unlike with the tools, points are not consolidated by default: the polygons would not fit the
+ * input cloud. For a noisy scan, set setConsolidation(ConsolidationMode::AsTopology).
  *
  * Failure (null or empty cloud, an index out of range, fewer than 4 distinct finite points, all
  * points in one plane, an option out of range, cancellation) leaves an empty mesh and prints one
@@ -389,8 +381,8 @@ private:
   /** \brief Fills the results. */
   void meshPoints(FillMode fill);
 
-  /** \brief Clears the results, does the work and, if it fails, clears all and says why. */
-  void run(const std::function<void()>& work, const std::function<void()>& clear_output);
+  /** \brief Clears the results, does the work and, if it fails, clears the results and says why. */
+  void run(const std::function<void()>& work);
 
   void clearResults();
 

@@ -41,30 +41,29 @@ SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct(pcl::PolygonMesh& output) {
   output = pcl::PolygonMesh();
-  const auto work = [&] {
-    performReconstruction(output);
+  if (input_)
     output.header = input_->header;
-  };
-  const auto clear_output = [&] {
-    output = pcl::PolygonMesh();
-    if (input_)
-      output.header = input_->header;
-  };
-  run(std::cref(work), std::cref(clear_output));
+  run([&] {
+    pcl::PolygonMesh mesh;  // a failure leaves the output empty
+    performReconstruction(mesh);
+    output.cloud = std::move(mesh.cloud);
+    output.polygons = std::move(mesh.polygons);
+  });
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertices>& polygons) {
   polygons = std::vector<pcl::Vertices>();
-  const auto work = [&] { performReconstruction(polygons); };
-  const auto clear_output = [&] { polygons = std::vector<pcl::Vertices>(); };
-  run(std::cref(work), std::cref(clear_output));
+  run([&] {
+    std::vector<pcl::Vertices> triangles;
+    performReconstruction(triangles);
+    polygons = std::move(triangles);
+  });
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct() {
-  const auto work = [&] { meshPoints(FillMode::Flat); };
-  run(std::cref(work), [] {});
+  run([&] { meshPoints(FillMode::Flat); });
 }
 
 template <typename PointInT>
@@ -151,8 +150,7 @@ void SphericalParamReconstruction<PointInT>::meshPoints(FillMode fill) {
 }
 
 template <typename PointInT>
-void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& work,
-                                                 const std::function<void()>& clear_output) {
+void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& work) {
   clearResults();
   std::exception_ptr callback_error;
   bool initialized = false;
@@ -174,11 +172,6 @@ void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& wo
     return;
 
   clearResults();
-  try {
-    clear_output();
-  } catch (const std::bad_alloc&) {
-    // Another failure is reported already.
-  }
   error_message_ = std::move(failure);
   if (callback_error)
     std::rethrow_exception(callback_error);
