@@ -1,7 +1,8 @@
 #pragma once
 
-#include "guarantees.h"
+#include "helpers.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/execution.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,9 +12,7 @@
 /// What the fuzzers of the core share: points, lists and numbers from bytes, and how calls end.
 namespace fuzz {
 
-using spherical_param::Index;
-using spherical_param::NeighborLists;
-using spherical_param::Positions;
+using namespace spherical_param;
 
 /// A broken promise: ends the program, for libFuzzer to keep the input.
 [[noreturn]] inline void finding(const std::string& what) {
@@ -24,6 +23,10 @@ using spherical_param::Positions;
 inline void require(bool holds, const char* what) {
   if (!holds)
     finding(std::string("not so: ") + what);
+}
+
+inline bool areUnitVectors(const Positions& directions) {
+  return ((directions.colwise().norm().array() - 1.0).abs() < 1e-9).all();
 }
 
 /// Reads bytes from the front; zeros once there are no more.
@@ -92,8 +95,8 @@ private:
 
 /// Point i of n of one of seven shapes that are hard to mesh.
 inline Eigen::Vector3d onShape(int shape, int i, double n) {
-  using spherical_param::test::kPi;
-  using spherical_param::test::onCircle;
+  using test::kPi;
+  using test::onCircle;
   const double t = i / n;
   const double z = 1.0 - (2.0 * i + 1.0) / n;
   const Eigen::Vector3d on_sphere = onCircle(2.4 * i, std::sqrt(std::max(0.0, 1.0 - z * z)), z);
@@ -250,7 +253,7 @@ public:
       at_ = call;
     }
   }
-  bool operator()(const spherical_param::Progress& progress) {
+  bool operator()(const Progress& progress) {
     require(!hasEnded(), "the callback is not called again after it ended the work");
     require(std::this_thread::get_id() == caller_, "it is called from the caller's thread");
     require(progress.stage != nullptr && *progress.stage != '\0', "a stage has a name");
@@ -278,7 +281,7 @@ Ending endingOf(const Watch& watch, const Call& call, std::string& message) {
   Ending ending = Ending::Answer;
   try {
     call();
-  } catch (const spherical_param::Cancelled&) {
+  } catch (const Cancelled&) {
     require(watch.hasEnded() && !watch.throws(), "Cancelled comes out if it was asked for");
     return Ending::AsTheWatchAsked;
   } catch (const CallersFault& fault) {
@@ -288,10 +291,10 @@ Ending endingOf(const Watch& watch, const Call& call, std::string& message) {
       return Ending::AsTheWatchAsked;
     }
     ending = Ending::FaultOfSearch;
-  } catch (const spherical_param::InvalidInput& error) {
+  } catch (const InvalidInput& error) {
     ending = Ending::InvalidInput;
     message = error.what();
-  } catch (const spherical_param::ComputeError& error) {
+  } catch (const ComputeError& error) {
     ending = Ending::ComputeError;
     message = error.what();
   } catch (const std::exception& error) {

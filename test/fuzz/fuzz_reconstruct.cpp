@@ -1,6 +1,6 @@
 // reconstruct() with everything made of bytes: points, searches, options, callbacks.
 
-#include "fuzz_input.h"
+#include "guarantees.h"
 
 namespace {
 
@@ -117,13 +117,9 @@ private:
 
 void checkSurface(const Positions& points, const Options& options, const Surface& result) {
   if (!result.consolidation) {
-    const std::string fault = faultOf(points, options, result);
-    if (!fault.empty())
-      finding(fault);
+    requireGuarantees(points, options, result);
   } else {
-    const std::string fault = faultOfTopology(result);
-    if (!fault.empty())
-      finding(fault);
+    requireTopology(result);
     require(result.points.allFinite() &&
                 result.points.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the points are as many finite ones as there are vertices");
@@ -147,9 +143,7 @@ void checkSurface(const Positions& points, const Options& options, const Surface
 }
 
 void checkResult(const Positions& points, const Options& options, const Result& result) {
-  const std::string fault = faultOfLists(points, options, result);
-  if (!fault.empty())
-    finding(fault);
+  requireLists(points, options, result);
   for (const Surface& surface : result.surfaces) {
     require(options.parts != PartsMode::Each ||
                 firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=

@@ -8,7 +8,6 @@
 namespace fuzz {
 namespace {
 
-using namespace spherical_param;
 using test::Inputs;
 using test::Mapped;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fuzz_input.h"
 #include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 
@@ -10,8 +11,6 @@
 
 /// What reconstruct() guarantees, decided in exact arithmetic and without the library.
 namespace fuzz {
-
-using namespace spherical_param;
 
 using Place = std::tuple<double, double, double>;
 
@@ -76,10 +75,6 @@ inline bool areLists(const NeighborLists& lists, std::size_t count, std::size_t 
                      [&](Index j) { return j >= 0 && static_cast<std::size_t>(j) < n; });
 }
 
-inline bool areUnitVectors(const Positions& directions) {
-  return ((directions.colwise().norm().array() - 1.0).abs() < 1e-9).all();
-}
-
 /// Whether the volume, in long double, is negative by more than its rounding.
 inline bool facesInward(const Positions& points, const Triangles& triangles) {
   using Vector = Eigen::Matrix<long double, 3, 1>;
@@ -96,12 +91,11 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
   return volume < -1e-12L * size;
 }
 
-/// What a mesh lacks of the boundary, the pieces and the genus that are reported; empty if nothing.
-inline std::string faultOfTopology(const Surface& result) {
+/// Requires that a mesh has the boundary, the pieces and the genus that are reported.
+inline void requireTopology(const Surface& result) {
   const auto n = static_cast<Index>(result.vertexCount());
   const auto boundary = test::loopsOf(result.triangles);
-  if (!boundary)
-    return "the boundary is not of loops that are apart";
+  require(boundary.has_value(), "boundary loops are apart");
   // With a cone over each boundary loop it is closed.
   Index loops = 0;
   std::vector<Index> corners(result.triangles.data(),
@@ -113,70 +107,60 @@ inline std::string faultOfTopology(const Surface& result) {
   }
   const Triangles closed =
       Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
-  const auto pieces = static_cast<Index>(result.topology.components);
-  if (static_cast<std::size_t>(loops) != result.boundary.size() || !result.topology.genus ||
-      !test::isSurfaceOverAll(closed, n + loops, static_cast<Index>(*result.topology.genus),
-                              pieces))
-    return "the mesh is not a manifold with the boundary, the pieces and the genus that are "
-           "reported";
-  if (result.topology.closed != result.isClosed())
-    return "the result's own checks do not agree";
-  return "";
+  require(static_cast<std::size_t>(loops) == result.boundary.size() && result.topology.genus &&
+              test::isSurfaceOverAll(closed, n + loops, static_cast<Index>(*result.topology.genus),
+                                     static_cast<Index>(result.topology.components)),
+          "the mesh is a manifold with the boundary, the pieces and the genus that are reported");
+  require(result.topology.closed == result.isClosed(), "the result's own checks agree");
 }
 
-/// What a surface of some points of a cloud lacks of what is guaranteed; empty if it lacks nothing.
-inline std::string faultOf(const Positions& cloud, const Options& options, const Surface& result) {
+/// Requires of a surface of some points of a cloud what is guaranteed.
+inline void requireGuarantees(const Positions& cloud, const Options& options,
+                              const Surface& result) {
   const Positions points = cloud(Eigen::all, result.inputs);
   const std::size_t n = result.inputs.size();
   const std::map<Place, Index> first = firstAtPlaces(points);
   const std::size_t v = first.size();
-  if (result.vertexCount() != v || result.duplicates() != n - v ||
-      result.vertex_of_input.size() != n)
-    return "not one vertex for each distinct point";
+  require(result.vertexCount() == v && result.duplicates() == n - v &&
+              result.vertex_of_input.size() == n,
+          "there is one vertex for each distinct point");
   for (std::size_t i = 0; i < n; ++i) {
     const auto p = points.col(static_cast<Eigen::Index>(i));
     const auto vertex = static_cast<std::size_t>(result.vertex_of_input[i]);
     const auto expected =
         static_cast<std::size_t>(first.at({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}));
-    if (vertex >= v || result.input_of_vertex[vertex] != result.inputs[expected])
-      return "the vertex of a point is not that of the first point at its place";
+    require(vertex < v && result.input_of_vertex[vertex] == result.inputs[expected],
+            "the vertex of a point is that of the first point at its place");
   }
-  const auto count = static_cast<Eigen::Index>(v);
-  const std::string fault = faultOfTopology(result);
-  if (!fault.empty())
-    return fault;
+  requireTopology(result);
+  const Positions vertices = cloud(Eigen::all, result.input_of_vertex);
   const auto genus = static_cast<Index>(result.genus());
-  const bool is_sphere = !mayBeOpen(options) && options.intersections == IntersectionMode::Keep;
-  if (is_sphere && !result.isClosed())
-    return "the mesh is open, and was to be closed";
-  if (genus > 0 && options.handles == HandleMode::None)
-    return "the mesh has handles that were to be cut";
-  if (result.isClosed() && facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
-    return "the triangles face inward";
-  const bool has_sphere = result.sphere.cols() > 0;
+  require(result.isClosed() || mayBeOpen(options) ||
+              options.intersections != IntersectionMode::Keep,
+          "a mesh that was to be closed is closed");
+  require(genus == 0 || options.handles != HandleMode::None, "handles that were to be cut are cut");
+  require(!result.isClosed() || !facesInward(vertices, result.triangles), "triangles face outward");
+  const auto count = static_cast<Eigen::Index>(v);
   const bool has_details = options.details || options.topology == TopologyMode::Sphere;
-  const bool must_have = has_details && genus == 0 && !result.has_certain_triangles_only;
-  if ((has_sphere ? genus > 0 || result.sphere.cols() != count : must_have) ||
-      !areUnitVectors(result.sphere))
-    return "the embedding is not of unit vectors, or not of a sphere";
-  if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
-    return "the volume or the area is not finite";
-  if (result.points.cols() != count || !result.points.allFinite())
-    return "the points are not as many finite ones as vertices";
-  if (options.smoothing == 0 && result.added_vertices == 0 &&
-      result.points != cloud(Eigen::all, result.input_of_vertex))
-    return "the points are not those of the input";
-  return "";
+  require(areUnitVectors(result.sphere) &&
+              (result.sphere.cols() > 0
+                   ? genus == 0 && result.sphere.cols() == count
+                   : !has_details || genus > 0 || result.has_certain_triangles_only),
+          "a mesh without handles has an embedding of unit vectors");
+  require(std::isfinite(result.measures.volume) && std::isfinite(result.measures.area),
+          "volume and area are finite");
+  require(result.points.cols() == count && result.points.allFinite(),
+          "each vertex has a finite point");
+  require(options.smoothing != 0 || result.added_vertices != 0 || result.points == vertices,
+          "without smoothing, the points are those of the input");
 }
 
-/// What the lists of a result lack; empty if they lack nothing.
-inline std::string faultOfLists(const Positions& points, const Options& options,
-                                const Result& result) {
+/// Requires that every point is in one list of a result.
+inline void requireLists(const Positions& points, const Options& options, const Result& result) {
   const LeftOut& left_out = result.left_out;
   std::vector<int> times(static_cast<std::size_t>(points.cols()), 0);
-  bool is_ascending = true;
   const auto count = [&](const std::vector<Index>& list) {
-    is_ascending = is_ascending && std::is_sorted(list.begin(), list.end());
+    require(std::is_sorted(list.begin(), list.end()), "lists are ascending");
     for (const Index i : list)
       ++times.at(static_cast<std::size_t>(i));
   };
@@ -185,24 +169,23 @@ inline std::string faultOfLists(const Positions& points, const Options& options,
   for (const auto& list :
        {left_out.not_finite, left_out.outliers, left_out.other_parts, left_out.unmeshed})
     count(list);
-  if (!is_ascending || std::any_of(times.begin(), times.end(), [](int t) { return t != 1; }))
-    return "not every point is in one list, or a list is not ascending";
-  if (static_cast<Eigen::Index>(left_out.not_finite.size()) !=
-      points.cols() - finiteOf(points).cols())
-    return "not all points that are not finite are listed";
-  if (options.outliers == OutlierMode::None && !left_out.outliers.empty())
-    return "outliers that were not to be looked for";
-  if (options.parts == PartsMode::All && !left_out.other_parts.empty())
-    return "other parts of a whole cloud";
-  if (result.surfaces.empty() || (options.parts != PartsMode::Each && result.surfaces.size() > 1))
-    return "not the number of surfaces";
+  require(std::all_of(times.begin(), times.end(), [](int t) { return t == 1; }),
+          "every point is in one list");
+  require(static_cast<Eigen::Index>(left_out.not_finite.size()) ==
+              points.cols() - finiteOf(points).cols(),
+          "all points that are not finite are listed");
+  require(options.outliers != OutlierMode::None || left_out.outliers.empty(),
+          "outliers are left out on request alone");
+  require(options.parts != PartsMode::All || left_out.other_parts.empty(),
+          "a whole cloud has no other parts");
+  require(!result.surfaces.empty() &&
+              (options.parts == PartsMode::Each || result.surfaces.size() == 1),
+          "there are as many surfaces as parts were asked for");
   for (std::size_t i = 1; i < result.surfaces.size(); ++i)
-    if (result.surfaces[i].inputs.size() > result.surfaces[i - 1].inputs.size())
-      return "the surface of most points is not the first";
+    require(result.surfaces[i].inputs.size() <= result.surfaces[i - 1].inputs.size(),
+            "the surface of most points is the first");
   for (const std::string& failure : result.failures)
-    if (failure.find("please report") != std::string::npos)
-      return failure;
-  return "";
+    require(failure.find("please report") == std::string::npos, "no part fails by a bug");
 }
 
 }  // namespace fuzz
