@@ -172,10 +172,10 @@ inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, int shap
   }
 }
 
-/// Mostly up to 64 points, up to 300; mostly all in the range that reconstruct() takes.
+/// Up to 64 points; mostly all in the range that reconstruct() takes.
 inline Positions pointsFrom(Bytes& bytes) {
   const std::uint8_t how = bytes.byte();
-  const Eigen::Index n = how < 240 ? 4 + how % 61 : how < 250 ? 30 * (how - 239) : how - 250;
+  const Eigen::Index n = how < 250 ? 4 + how % 61 : how - 250;
   const std::uint8_t range = bytes.byte();
   Positions points(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
