@@ -22,6 +22,12 @@ if(NOT SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
   message(FATAL_ERROR "FLANN was not found: install libflann-dev")
 endif()
 mark_as_advanced(SPHERICAL_PARAM_LZ4_INCLUDE_DIR SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
+spherical_param_version_of_header(lz4_version "${SPHERICAL_PARAM_LZ4_INCLUDE_DIR}/lz4.h"
+  LZ4_VERSION_MAJOR LZ4_VERSION_MINOR LZ4_VERSION_RELEASE)
+spherical_param_require_version(lz4 "${lz4_version}" 1.8 liblz4-dev)
+spherical_param_version_of_header(flann_version
+  "${SPHERICAL_PARAM_FLANN_INCLUDE_DIR}/flann/config.h" FLANN_VERSION_)
+spherical_param_require_version(FLANN "${flann_version}" 1.9 libflann-dev)
 
 if(NOT SPHERICAL_PARAM_BUILD_PCL)
   return()

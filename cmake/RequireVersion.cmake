@@ -16,3 +16,21 @@ function(spherical_param_require_version what found least package)
                         "(CMAKE_PREFIX_PATH)")
   endif()
 endfunction()
+
+# The value of a number that a header defines: spherical_param_version_of_header(<result> <file>
+# <macro>...), where several macros are parts of a version.
+function(spherical_param_version_of_header result file)
+  set(parts "")
+  foreach(macro IN LISTS ARGN)
+    set(line "")
+    if(EXISTS "${file}")
+      file(STRINGS "${file}" line LIMIT_COUNT 1
+        REGEX "^#[ \t]*define[ \t]+${macro}[ \t]+\"?[0-9.]+\"?")
+    endif()
+    if(line MATCHES "${macro}[ \t]+\"?([0-9.]+)")
+      list(APPEND parts ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  list(JOIN parts "." version)
+  set(${result} "${version}" PARENT_SCOPE)
+endfunction()
