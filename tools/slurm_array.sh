@@ -2,7 +2,7 @@
 #SBATCH --job-name=spherical_param
 #SBATCH --output=slurm-%A_%a.log
 #
-# Meshes the scans of a list as an array job of Slurm. Each task takes its share of the list.
+# Meshes the scans of a list as an array job of Slurm. Each task takes its part of the list.
 #
 #   sbatch --array=0-7 --cpus-per-task=2 slurm_array.sh LIST MESHES [option...]
 #
@@ -20,16 +20,16 @@ if [ "$#" -lt 2 ] || [ -z "${SLURM_ARRAY_TASK_COUNT:-}" ]; then
 fi
 list="$1" meshes="$2"
 shift 2
-shares="$SLURM_ARRAY_TASK_COUNT"
-share="$((SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN))"
-if [ "$((SLURM_ARRAY_TASK_MAX - SLURM_ARRAY_TASK_MIN + 1))" -ne "$shares" ]; then
+tasks="$SLURM_ARRAY_TASK_COUNT"
+task="$((SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN))"
+if [ "$((SLURM_ARRAY_TASK_MAX - SLURM_ARRAY_TASK_MIN + 1))" -ne "$tasks" ]; then
   echo "slurm_array.sh: the array has gaps; give --array=0-N" >&2
   exit 2
 fi
 mapfile -t scans < <(grep . "$list")
 mkdir -p "$meshes"
 failed=0
-for ((i = share; i < ${#scans[@]}; i += shares)); do
+for ((i = task; i < ${#scans[@]}; i += tasks)); do
   name="$(basename "${scans[i]}")"
   mesh="$meshes/${name%.*}.ply"
   [ -e "$mesh" ] || pcl_spherical_param_reconstruction "${scans[i]}" "$mesh" -quiet \

@@ -71,7 +71,8 @@ struct Inputs {
   std::function<void(Triangles&)> spoil_triangles = {};
 };
 
-/// All that some functions of the library answer. A broken promise is a std::logic_error.
+/// Calls functions of the library and returns all numbers of their answers. A broken promise is a
+/// std::logic_error.
 using Run = std::function<Numbers(const Inputs&, const Execution&)>;
 
 struct Function {

@@ -80,7 +80,7 @@ inline Triangles trianglesOf(const Polygons& polygons) {
   return triangles;
 }
 
-/// Whether the polygons are a closed mesh of this genus over so many points.
+/// Whether the polygons are a closed mesh of this genus over this number of points.
 inline bool isClosed(const Polygons& polygons, std::size_t points, int genus) {
   return spherical_param::test::isSurfaceOverAll(trianglesOf(polygons), static_cast<int>(points),
                                                  genus);

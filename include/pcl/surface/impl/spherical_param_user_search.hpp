@@ -21,8 +21,8 @@ namespace pcl {
 namespace detail {
 
 /** \brief Whether a search object on a subset of a cloud answers with positions in the subset, or
- * with indices of the cloud: PCL 1.13 has both kinds, in FlannSearch and KdTree. Told by queries
- * for the nearest neighbour of points of the subset: themselves. */
+ * with indices of the cloud: PCL 1.13 has both kinds, in FlannSearch and KdTree. Asks for the
+ * nearest neighbours of points of the subset, which are the points themselves. */
 template <typename PointInT>
 bool findsPositions(const pcl::search::Search<PointInT>& search,
                     const pcl::PointCloud<PointInT>& cloud, const pcl::Indices& subset) {
