@@ -110,7 +110,8 @@ class BadInput(ToolTest):
                 "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
                 "-tolerance nan": "option -tolerance: 'nan'", "-damping ''": "option -damping: ''",
                 "-method ball": "option -method: 'ball'", "-outliers 1001": "option -outliers: '1001'",
-                "-history_frames 5": "'-history_frames'", "-parts each -min-points 3": "-min-points"},
+                "-history_frames 5": "'-history_frames'", "-parts each -min-points 3": "-min-points",
+                "-view 1,2": "option -view: '1,2'", "-view 1,2,inf": "option -view: '1,2,inf'"},
             "scan sphere out.pcd": {
                 "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
                 "-seed -1": "option -seed: '-1'"},
@@ -192,6 +193,7 @@ class BadInput(ToolTest):
             "reconstruction pipe.ply out.ply": "not a regular file",
             "reconstruction three.xyz out.ply": "at least 4",
             "reconstruction in.xyz out.ply -parts each -min-points 501": "no part has min_points = 501",
+            "reconstruction in.xyz out.ply -view 9,0,0 -smoothing 5": "smoothing cannot be used with a view",
             "reconstruction flat.xyz out.ply -topology sphere":
                 "cannot mesh 'flat.xyz': all points lie in one plane",
             "reconstruction outliers.xyz out.ply -topology sphere -outliers 0":
