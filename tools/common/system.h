@@ -1,7 +1,6 @@
 #pragma once
 
 #include <charconv>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -34,9 +33,6 @@ std::FILE* createFile(const std::string& path, std::filesystem::perms rights);
 
 /// Opens what exists, such as a pipe or a device, for writing. \return null: see errno
 std::FILE* openDevice(const std::string& path);
-
-/// Goes to a byte of a file, also behind 2 GB. \return false: see errno
-bool seek(std::FILE& file, std::uint64_t position);
 
 /// Why a file cannot be written or a directory takes no files: an error of errno, or 0.
 int writeRefusal(const std::string& path);

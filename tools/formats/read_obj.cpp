@@ -76,26 +76,23 @@ void addNormals(ObjContent& content) {
 /// Wavefront OBJ: the vertices, with colours (v x y z r g b), and normals as the faces refer to
 /// them, or in the order of the vertices if no face does. PCL's reader is not used: it drops the
 /// colours and takes the normals in their order, whatever the faces say.
-PointData readObj(const std::string& path, const std::vector<std::string>& /*columns*/,
-                  const FileProgress& progress) {
+PointData readObj(InputFile& file, const std::vector<std::string>& /*columns*/) {
   ObjContent content;
-  const std::size_t count = countLines(path, "v ");
+  const std::size_t count = countLines(file.path(), "v ");
   for (const char* name : {"x", "y", "z", "red", "green", "blue"}) {
     content.columns.push_back({name, false, {}});
     content.columns.back().values.reserve(content.columns.size() > 3 ? 0 : count);
   }
   Words words;
-  forEachLine(path, progress, [&](std::size_t line, std::string_view text) {
-    split(withoutRemark(text), " \t\r", words);
+  for (std::string_view line; file.nextLine(line);) {
+    split(withoutRemark(line), " \t\r", words);
     if (words.empty()) {
-      return;
+      continue;
     }
-    if (words[0] == "v" || words[0] == "vn") {
-      const auto values = requireThreeNumbers(path, line, words, 1);
-      if (words[0] == "vn") {
-        content.normals.push_back(values);
-        return;
-      }
+    if (words[0] == "vn") {
+      content.normals.push_back(requireThreeNumbers(file, words));
+    } else if (words[0] == "v") {
+      const auto values = requireThreeNumbers(file, words);
       const auto color = threeNumbers(words, 4);
       for (std::size_t d = 0; d < 3; ++d) {
         content.columns[d].values.push_back(values[d]);
@@ -109,11 +106,11 @@ PointData readObj(const std::string& path, const std::vector<std::string>& /*col
       }
     } else if (words[0].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
                                           "0123456789/.-\\") != std::string_view::npos) {
-      failContent(path, "line " + std::to_string(line) + " is not a statement of an OBJ file");
+      failLine(file, "is not a statement of an OBJ file");
     }
-  });
+  }
   if (content.points() == 0) {
-    failContent(path, "it has no points");
+    failContent(file.path(), "it has no points");
   }
   addNormals(content);
   if (content.columns[3].values.size() != content.points()) {

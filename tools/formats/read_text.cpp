@@ -112,25 +112,23 @@ std::vector<std::string> namesOf(std::string_view line) {
 
 /// The first lines of a file.
 struct Beginning {
-  std::string content;
   Words lines;     ///< those with data, or a heading
   Words comments;  ///< before the first of them
 };
 
-Beginning readFirstLines(const std::string& path) {
+Beginning firstLines(InputFile& file) {
   constexpr std::size_t most_bytes = std::size_t{1} << 16;
   Beginning beginning;
-  beginning.content = readBeginning(path, most_bytes);
-  std::string_view rest = withoutByteOrderMark(beginning.content);
+  std::string_view rest = withoutByteOrderMark(file.peek(most_bytes));
   if (rest.find('\n') == std::string_view::npos && rest.find('\r') < rest.size() - 1) {
-    failReading(path, "its lines do not end in LF",
+    failReading(file.path(), "its lines do not end in LF",
                 "convert it: tr '\\r' '\\n' < in.txt > out.txt");
   }
   if (rest.find('\0') != std::string_view::npos) {
-    failReading(path, "it is no text, or text in UTF-16",
+    failReading(file.path(), "it is no text, or text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
   }
-  const bool is_whole = beginning.content.size() < most_bytes;
+  const bool is_whole = file.size() < most_bytes;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos && !is_whole && !beginning.lines.empty()) {
@@ -186,14 +184,14 @@ bool areNumbered(const Words& lines) {
 }
 
 /// \throw Failure if columns are of latitude and longitude instead of x, y and z.
-void requireLengths(const std::string& path, const std::vector<std::string>& names) {
+void requireLengths(const InputFile& file, const std::vector<std::string>& names) {
   const auto is_degree = [](const std::string& name) {
     static const std::set<std::string> degrees = {"latitude", "longitude", "lat",
                                                   "lon",      "lng",       "long"};
     return degrees.count(commonName(name)) > 0;
   };
   if (std::count_if(names.begin(), names.end(), is_degree) >= 2 && !areCoordinatesNamed(names)) {
-    failReading(path, "its latitude and longitude are degrees, which are not lengths",
+    failReading(file.path(), "its latitude and longitude are degrees, which are not lengths",
                 "project them first, e.g. gdaltransform -s_srs EPSG:4326 -t_srs EPSG:32632");
   }
 }
@@ -207,7 +205,7 @@ bool takeList(std::vector<std::string>& names) {
 }
 
 /// How lines of data are separated. \param names of the columns, if they are known.
-TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names) {
+TextStyle styleOf(const InputFile& file, const Words& lines, std::size_t names) {
   const auto all = [&](const auto& is_so) {
     return std::all_of(lines.begin(), lines.end(), is_so);
   };
@@ -244,7 +242,7 @@ TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names
   };
   const bool are_all_pairs = all(are_pairs);
   if (are_all_pairs && names == 0) {
-    failReading(path, "its commas separate columns, or they are decimal",
+    failReading(file.path(), "its commas separate columns, or they are decimal",
                 "if they are decimal, give -columns x,y,z; else -columns x,y,z,-,-,-");
   }
   return {',', are_all_pairs};
@@ -262,8 +260,8 @@ struct TextLayout {
   bool has_lists = false;          ///< rows go on behind the columns
 };
 
-TextLayout layoutOf(const std::string& path, const std::vector<std::string>& given) {
-  const Beginning beginning = readFirstLines(path);
+TextLayout layoutOf(InputFile& file, const std::vector<std::string>& given) {
+  const Beginning beginning = firstLines(file);
   TextLayout layout;
   layout.names = given;
   layout.are_given = !given.empty();
@@ -280,7 +278,8 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     const Words counts = split(lines.front(), " \t\r,;");
     layout.numbered = toInteger(counts.front()).value_or(0);
     if (!layout.are_given && counts.size() > 1 && counts[1] == "2") {
-      failReading(path, "its points have two dimensions, as its first line says", name_columns);
+      failReading(file.path(), "its points have two dimensions, as its first line says",
+                  name_columns);
     }
     lines.erase(lines.begin());
   }
@@ -293,16 +292,16 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     }
     lines.erase(lines.begin());
   }
-  requireLengths(path, layout.names);
+  requireLengths(file, layout.names);
   if (layout.has_heading && !areCoordinatesNamed(layout.names)) {
-    failReading(path, "line 1 neither begins with three numbers nor names x, y and z",
+    failReading(file.path(), "line 1 neither begins with three numbers nor names x, y and z",
                 name_columns);
   }
   if (lines.empty()) {
-    failContent(path, "it has no points");
+    failContent(file.path(), "it has no points");
   }
   if (isCount(lines.front())) {
-    failReading(path, "it begins with two numbers of points, as PTX files do",
+    failReading(file.path(), "it begins with two numbers of points, as PTX files do",
                 "convert it to PLY with CloudCompare");
   }
   for (auto comment = beginning.comments.rbegin();
@@ -313,9 +312,9 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
       continue;
     }
     Words cells;
-    splitCells(lines.front(), styleOf(path, lines, names.size()), names.size(), cells);
+    splitCells(lines.front(), styleOf(file, lines, names.size()), names.size(), cells);
     if (names.size() == cells.size() || (has_lists && names.size() < cells.size())) {
-      requireLengths(path, names);
+      requireLengths(file, names);
       // "North, east, elevation" may be prose.
       const bool has_x = std::any_of(names.begin(), names.end(),
                                      [](const auto& name) { return commonName(name) == "x"; });
@@ -325,8 +324,8 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
       }
     }
   }
-  layout.style = styleOf(path, lines, layout.names.size());
-  const std::string extension = extensionOf(path);
+  layout.style = styleOf(file, lines, layout.names.size());
+  const std::string extension = extensionOf(file.path());
   Words cells;
   splitCells(lines.front(), layout.style, 0, cells);
   if (layout.names.empty() && cells.size() == 6 && extension == ".xyzn") {
@@ -343,12 +342,11 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
 /// The columns of lines of text.
 class TextColumns {
 public:
-  TextColumns(const std::string& path, const TextLayout& layout) : path_(path), layout_(layout) {}
+  TextColumns(const InputFile& file, const TextLayout& layout) : file_(file), layout_(layout) {}
 
   std::vector<PointColumn>& columns() { return columns_; }
 
-  /// \param number of the line.
-  void add(std::size_t number, std::string_view line) {
+  void add(std::string_view line) {
     splitCells(line, layout_.style, columns_.empty() ? layout_.names.size() : columns_.size(),
                cells_);
     if (columns_.empty()) {
@@ -357,7 +355,7 @@ public:
     const std::size_t count = columns_.size();
     if (cells_.size() < count ||
         (cells_.size() > count && !layout_.are_given && !layout_.has_lists)) {
-      fail(number, counted(cells_.size(), "column") + " instead of " + std::to_string(count));
+      fail(counted(cells_.size(), "column") + " instead of " + std::to_string(count));
     }
     for (std::size_t c = 0; c < count; ++c) {
       if (is_left_out_[c]) {
@@ -366,23 +364,22 @@ public:
       const std::optional<double> value =
           cells_[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells_[c]);
       if (!value) {
-        fail(number,
-             "no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells_[c]));
+        fail("no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells_[c]));
       }
       columns_[c].values.push_back(*value);
     }
   }
 
 private:
-  [[noreturn]] void fail(std::size_t line, const std::string& reason) const {
-    failReading(path_, "line " + std::to_string(line) + " has " + reason,
+  [[noreturn]] void fail(const std::string& reason) const {
+    failReading(file_.path(), "line " + std::to_string(file_.lineNumber()) + " has " + reason,
                 "correct it, or " + std::string(name_columns));
   }
 
   void begin() {
     const std::vector<std::string>& names = layout_.names;
     columns_.resize(names.empty() ? std::max<std::size_t>(cells_.size(), 3) : names.size());
-    const std::size_t lines = countLines(path_, "");
+    const std::size_t lines = countLines(file_.path(), "");
     is_left_out_.resize(columns_.size(), false);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       columns_[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
@@ -401,7 +398,7 @@ private:
     }
   }
 
-  const std::string& path_;
+  const InputFile& file_;
   const TextLayout& layout_;
   Words cells_;
   std::vector<PointColumn> columns_;
@@ -487,35 +484,34 @@ std::string describe(const std::vector<PointColumn>& columns, const TextLayout& 
 /// separate; decimal commas are seen. The first line may be the number of points; if it is, and the
 /// first column counts them, that is left out. Of lines that all begin with d, g, p or s, those
 /// with p are points.
-PointData readText(const std::string& path, const std::vector<std::string>& given,
-                   const FileProgress& progress) {
-  const TextLayout layout = layoutOf(path, given);
-  TextColumns table(path, layout);
+PointData readText(InputFile& file, const std::vector<std::string>& given) {
+  const TextLayout layout = layoutOf(file, given);
+  TextColumns table(file, layout);
   const bool is_numbered = layout.numbered > 0;
   auto announced = static_cast<double>(layout.numbered);
   double count = 0.0;
   bool is_first = layout.has_heading || is_numbered;  // a heading, or counts
-  forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
+  for (std::string_view line; file.nextLine(line);) {
     line = withoutComment(line);
     line = layout.has_letters ? behindLetter(line) : line;
     if (line.empty()) {
-      return;
+      continue;
     }
     if (layout.has_counts && isCount(line)) {
       announced += static_cast<double>(*toInteger(line));
     } else if (!std::exchange(is_first, false)) {
-      table.add(number, line);
+      table.add(line);
       count += 1.0;
     }
-  });
+  }
   if (count < announced || (is_numbered && count > announced)) {
-    failContent(path, std::string("it has ") + (count < announced ? "fewer" : "more") +
-                          " points than its first line says");
+    failContent(file.path(), std::string("it has ") + (count < announced ? "fewer" : "more") +
+                                 " points than its first line says");
   }
   std::vector<PointColumn> columns = std::move(table.columns());
   if (layout.names.empty()) {
     if (columns.size() > 3 && isCounter(columns[0].values)) {
-      failReading(path, "its first column counts the lines, or it is x",
+      failReading(file.path(), "its first column counts the lines, or it is x",
                   "name its columns: -columns -,x,y,z or -columns x,y,z");
     }
     nameFurther(columns);
