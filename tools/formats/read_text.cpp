@@ -339,71 +339,58 @@ TextLayout layoutOf(InputFile& file, const std::vector<std::string>& given) {
   return layout;
 }
 
-/// The columns of lines of text.
-class TextColumns {
-public:
-  TextColumns(const InputFile& file, const TextLayout& layout) : file_(file), layout_(layout) {}
+/// \throw Failure for what is wrong with the last line that was taken.
+[[noreturn]] void failRow(const InputFile& file, const std::string& reason) {
+  failReading(file.path(), "line " + std::to_string(file.lineNumber()) + " has " + reason,
+              "correct it, or " + std::string(name_columns));
+}
 
-  std::vector<PointColumn>& columns() { return columns_; }
-
-  void add(std::string_view line) {
-    splitCells(line, layout_.style, columns_.empty() ? layout_.names.size() : columns_.size(),
-               cells_);
-    if (columns_.empty()) {
-      begin();
-    }
-    const std::size_t count = columns_.size();
-    if (cells_.size() < count ||
-        (cells_.size() > count && !layout_.are_given && !layout_.has_lists)) {
-      fail(counted(cells_.size(), "column") + " instead of " + std::to_string(count));
-    }
-    for (std::size_t c = 0; c < count; ++c) {
-      if (is_left_out_[c]) {
-        continue;
-      }
-      const std::optional<double> value =
-          cells_[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells_[c]);
-      if (!value) {
-        fail("no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells_[c]));
-      }
-      columns_[c].values.push_back(*value);
-    }
+/// The columns of a file without their values. Those that are left out have the name "-".
+///
+/// \param cells of the first row.
+std::vector<PointColumn> columnsOf(const std::string& path, const TextLayout& layout,
+                                   const Words& cells) {
+  const std::vector<std::string>& names = layout.names;
+  std::vector<PointColumn> columns(names.empty() ? std::max<std::size_t>(cells.size(), 3)
+                                                 : names.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    columns[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
   }
-
-private:
-  [[noreturn]] void fail(const std::string& reason) const {
-    failReading(file_.path(), "line " + std::to_string(file_.lineNumber()) + " has " + reason,
-                "correct it, or " + std::string(name_columns));
+  const std::vector<PointColumn*> coordinates = findColumns(columns, {"x", "y", "z"});
+  for (std::size_t d = 0; d < coordinates.size(); ++d) {
+    coordinates[d]->name = "xyz"[d];
   }
-
-  void begin() {
-    const std::vector<std::string>& names = layout_.names;
-    columns_.resize(names.empty() ? std::max<std::size_t>(cells_.size(), 3) : names.size());
-    const std::size_t lines = countLines(file_.path(), "");
-    is_left_out_.resize(columns_.size(), false);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      columns_[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
+  const std::size_t lines = countLines(path, "");
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const bool is_word = c < cells.size() && !cells[c].empty() && !toValue(cells[c]);
+    if (is_word && std::count(coordinates.begin(), coordinates.end(), &columns[c]) == 0) {
+      columns[c].name = "-";
     }
-    const std::vector<PointColumn*> coordinates = findColumns(columns_, {"x", "y", "z"});
-    for (std::size_t d = 0; d < coordinates.size(); ++d) {
-      coordinates[d]->name = "xyz"[d];
-    }
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      PointColumn& column = columns_[c];
-      const bool is_word = c < cells_.size() && !cells_[c].empty() && !toValue(cells_[c]);
-      const bool is_coordinate =
-          std::find(coordinates.begin(), coordinates.end(), &column) != coordinates.end();
-      is_left_out_[c] = column.name == "-" || (is_word && !is_coordinate);
-      column.values.reserve(is_left_out_[c] ? 0 : lines);
-    }
+    columns[c].values.reserve(columns[c].name == "-" ? 0 : lines);
   }
+  return columns;
+}
 
-  const InputFile& file_;
-  const TextLayout& layout_;
-  Words cells_;
-  std::vector<PointColumn> columns_;
-  std::vector<bool> is_left_out_;
-};
+/// Adds a row to the columns. \throw Failure if it has other cells.
+void addRow(const InputFile& file, const TextLayout& layout, const Words& cells,
+            std::vector<PointColumn>& columns) {
+  const bool may_go_on = layout.are_given || layout.has_lists;
+  if (cells.size() < columns.size() || (cells.size() > columns.size() && !may_go_on)) {
+    failRow(file,
+            counted(cells.size(), "column") + " instead of " + std::to_string(columns.size()));
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].name == "-") {
+      continue;
+    }
+    const std::optional<double> value =
+        cells[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells[c]);
+    if (!value) {
+      failRow(file, "no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells[c]));
+    }
+    columns[c].values.push_back(*value);
+  }
+}
 
 /// Names of three columns by what is in them: colours are whole numbers of 0 to 255 that are not
 /// all 0, normals have length 1, or are all 0. \return empty if they are neither
@@ -486,7 +473,8 @@ std::string describe(const std::vector<PointColumn>& columns, const TextLayout& 
 /// with p are points.
 PointData readText(InputFile& file, const std::vector<std::string>& given) {
   const TextLayout layout = layoutOf(file, given);
-  TextColumns table(file, layout);
+  std::vector<PointColumn> columns;
+  Words cells;
   const bool is_numbered = layout.numbered > 0;
   auto announced = static_cast<double>(layout.numbered);
   double count = 0.0;
@@ -500,7 +488,11 @@ PointData readText(InputFile& file, const std::vector<std::string>& given) {
     if (layout.has_counts && isCount(line)) {
       announced += static_cast<double>(*toInteger(line));
     } else if (!std::exchange(is_first, false)) {
-      table.add(line);
+      splitCells(line, layout.style, columns.empty() ? layout.names.size() : columns.size(), cells);
+      if (columns.empty()) {
+        columns = columnsOf(file.path(), layout, cells);
+      }
+      addRow(file, layout, cells, columns);
       count += 1.0;
     }
   }
@@ -508,7 +500,6 @@ PointData readText(InputFile& file, const std::vector<std::string>& given) {
     failContent(file.path(), std::string("it has ") + (count < announced ? "fewer" : "more") +
                                  " points than its first line says");
   }
-  std::vector<PointColumn> columns = std::move(table.columns());
   if (layout.names.empty()) {
     if (columns.size() > 3 && isCounter(columns[0].values)) {
       failReading(file.path(), "its first column counts the lines, or it is x",
