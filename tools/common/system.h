@@ -17,8 +17,8 @@ bool isTerminal();
 /// meant for the terminal would be written into a mesh.
 void occupyStandardStreams();
 
-/// Leaves memory that is freed with the process: to give it back and to take it anew is a tenth of
-/// the time of ten million points.
+/// Keeps freed memory in the process: for large clouds, to return it to the system and to request
+/// it again takes a noticeable part of the time.
 void keepMemory();
 
 /// Calls a function when the user or the system ends the tool. It is to call the function that it
@@ -34,7 +34,7 @@ std::FILE* createFile(const std::string& path, std::filesystem::perms rights);
 /// Opens what exists, such as a pipe or a device, for writing. \return null: see errno
 std::FILE* openDevice(const std::string& path);
 
-/// Why a file cannot be written or a directory takes no files: an error of errno, or 0.
+/// The error of errno that prevents writing a file, or creating one in a directory; 0: none.
 int writeRefusal(const std::string& path);
 
 /// Whether a file cannot grow, for the disk, its quota or a limit.

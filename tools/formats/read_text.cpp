@@ -25,8 +25,8 @@ struct TextStyle {
   bool has_decimal_commas = false;
 };
 
-/// A line without a comment, which '#' begins, or "//" or '%' before a word; one that is all
-/// comment, or frames the points, is empty.
+/// The line without its comment, which begins with '#', or with "//" or '%' before a word. Empty for
+/// a comment alone, and for BEGIN and END around the points.
 std::string_view withoutComment(std::string_view line) {
   line = trimmed(withoutRemark(line));
   constexpr std::size_t longest = 5;
@@ -157,8 +157,8 @@ bool isCount(std::string_view line) {
   return toInteger(line).has_value();
 }
 
-/// What follows the letter of a point, "p x y z"; empty for a line of another letter that such
-/// files have; a line without such a letter as it is.
+/// The text behind the letter of a point, "p x y z"; nothing of lines that begin with d, g or s, which
+/// such files have beside them. Other lines stay as they are.
 std::string_view behindLetter(std::string_view line) {
   const bool has_letter = line.size() > 1 && (line[1] == ' ' || line[1] == '\t') &&
                           std::string_view("dgps").find(line[0]) != std::string_view::npos;
@@ -415,8 +415,8 @@ std::vector<std::string> namesOfThree(const std::vector<PointColumn>& columns, s
   return are_colors ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>();
 }
 
-/// Names the columns after x, y and z that nothing names: by threes, perhaps with an intensity
-/// before, between or behind them, wherever most threes are colours or normals.
+/// Names the columns behind x, y and z if nothing else does: groups of three are colours or normals.
+/// An intensity may stand before, between or behind them, where most groups make sense.
 void nameFurther(std::vector<PointColumn>& columns) {
   const std::size_t end = columns.size();
   std::map<std::size_t, std::string> best;
