@@ -9,7 +9,6 @@
 #include "common/text.h"
 #include "spherical_param/version.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>

@@ -134,7 +134,7 @@ class ReconstructionTool(ToolTest):
     def test_report_has_all_keys_with_their_types(self):
         report = reported("in.ply", "out.ply", "-starts=4", "-sphere", "sphere.ply")
         self.check_types(report, TYPES)
-        # Steps that smooth the embedding are none to a solution.
+        # Smoothing steps do not end at a solution.
         self.check_entries(report, {"points": 200, "triangles": 396, "closed": True, "manifold": True,
                                     "oriented": True, "genus": 0, "diagnosis": {"cut_handles": 0},
                                     "embedding": {"stop_reason": "unfinished"}, "is_out_of_time": False,

@@ -2,7 +2,6 @@
 
 #include "common/point_data.h"
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>

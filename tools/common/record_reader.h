@@ -36,10 +36,9 @@ struct RecordLayout {
   std::vector<RecordElement> elements;  ///< in their order; one is "vertex", and perhaps one "face"
 };
 
-/// Reads the points of a PLY, PCD or OFF file, with no more memory than they, a block of the file
-/// and the words of its longest line take, and all fields where they are packed. PCL's readers have
-/// the file, its fields and the points in memory, all at a time, take up to ten times as long for
-/// text, and read what a broken file makes them read.
+/// Reads the points of a PLY, PCD or OFF file. In memory are the points, a block of the file and
+/// its longest line; of packed files, all fields. PCL's readers hold file, fields and points in
+/// memory at the same time, take up to ten times as long for text, and trust a broken file.
 ///
 /// \param file   behind its header. \param layout compared with the size of the file.
 /// \throw Failure if the file is shorter than its header says, or has words for numbers.

@@ -41,8 +41,7 @@ int writeRefusal(const std::string& path);
 bool isLackOfSpace(const std::error_code& error);
 
 #ifndef __cpp_lib_to_chars
-/// strtod() in the locale "C", whatever the program's is, for libraries whose from_chars() reads no
-/// real numbers.
+/// strtod() in the locale "C", for libraries whose from_chars() reads no real numbers.
 double strtodInC(const char* text, char** end);
 #endif
 

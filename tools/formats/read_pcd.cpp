@@ -1,9 +1,9 @@
-#include "common/point_table.h"
 #include "common/record_reader.h"
 #include "formats/formats.h"
 #include "formats/text_lines.h"
 #include "spherical_param/reconstruct.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>

@@ -25,8 +25,8 @@ struct TextStyle {
   bool has_decimal_commas = false;
 };
 
-/// The line without its comment, which begins with '#', or with "//" or '%' before a word. Empty for
-/// a comment alone, and for BEGIN and END around the points.
+/// The line without its comment, which begins with '#', or with "//" or '%' before a word. Empty
+/// for a comment alone, and for BEGIN and END around the points.
 std::string_view withoutComment(std::string_view line) {
   line = trimmed(withoutRemark(line));
   constexpr std::size_t longest = 5;
@@ -117,9 +117,9 @@ struct Beginning {
 };
 
 Beginning firstLines(InputFile& file) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 16;
+  constexpr std::size_t max_bytes = std::size_t{1} << 16;
   Beginning beginning;
-  std::string_view rest = withoutByteOrderMark(file.peek(most_bytes));
+  std::string_view rest = withoutByteOrderMark(file.peek(max_bytes));
   if (rest.find('\n') == std::string_view::npos && rest.find('\r') < rest.size() - 1) {
     failReading(file.path(), "its lines do not end in LF",
                 "convert it: tr '\\r' '\\n' < in.txt > out.txt");
@@ -128,7 +128,7 @@ Beginning firstLines(InputFile& file) {
     failReading(file.path(), "it is no text, or text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
   }
-  const bool is_whole = file.size() < most_bytes;
+  const bool is_whole = file.size() < max_bytes;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos && !is_whole && !beginning.lines.empty()) {
@@ -157,8 +157,8 @@ bool isCount(std::string_view line) {
   return toInteger(line).has_value();
 }
 
-/// The text behind the letter of a point, "p x y z"; nothing of lines that begin with d, g or s, which
-/// such files have beside them. Other lines stay as they are.
+/// The text behind the letter of a point, "p x y z"; nothing of lines that begin with d, g or s,
+/// which such files have beside them. Other lines stay as they are.
 std::string_view behindLetter(std::string_view line) {
   const bool has_letter = line.size() > 1 && (line[1] == ' ' || line[1] == '\t') &&
                           std::string_view("dgps").find(line[0]) != std::string_view::npos;
@@ -168,8 +168,8 @@ std::string_view behindLetter(std::string_view line) {
 /// Whether the first line has counts, that of the points first, and the others are numbered from 0
 /// or 1 on, as in the .node files of TetGen.
 bool areNumbered(const Words& lines) {
-  constexpr std::size_t least = 3;
-  bool are_numbered = lines.size() >= least;
+  constexpr std::size_t min_lines = 3;
+  bool are_numbered = lines.size() >= min_lines;
   std::int64_t start = 0;
   for (std::size_t i = 0; i < lines.size() && are_numbered; ++i) {
     // Commas are decimal where others separate.
@@ -196,7 +196,7 @@ void requireLengths(const InputFile& file, const std::vector<std::string>& names
   }
 }
 
-/// Takes the last name off if it is that of a list: rows may be of any length then.
+/// Removes the last name if it is that of a list, which rows may end with. \return whether it was
 bool takeList(std::vector<std::string>& names) {
   const bool is_list = names.size() > 3 && (names.back().find("[]") != std::string::npos ||
                                             names.back().find("...") != std::string::npos);
@@ -415,8 +415,8 @@ std::vector<std::string> namesOfThree(const std::vector<PointColumn>& columns, s
   return are_colors ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>();
 }
 
-/// Names the columns behind x, y and z if nothing else does: groups of three are colours or normals.
-/// An intensity may stand before, between or behind them, where most groups make sense.
+/// Names the columns behind x, y and z if nothing else does: groups of three are colours or
+/// normals. An intensity may stand before, between or behind them, where most groups make sense.
 void nameFurther(std::vector<PointColumn>& columns) {
   const std::size_t end = columns.size();
   std::map<std::size_t, std::string> best;

@@ -266,12 +266,12 @@ TEST_F(CloudReader, ProgressGrowsToOne) {
   ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("packed.pcd"), cloud), 0);
   writeFile(directory.file("a.xyz"), textOf(cloud, ""));
   for (const char* name : {"a.ply", "a.pcd", "packed.pcd", "a.xyz"}) {
-    std::vector<double> shares;
-    readCloud(directory.file(name), [&](double share) { shares.push_back(share); });
-    ASSERT_GE(shares.size(), 2U) << name;
-    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << name;
-    EXPECT_LT(shares.front(), 0.9) << name;
-    EXPECT_EQ(shares.back(), 1.0) << name;
+    std::vector<double> fractions;
+    readCloud(directory.file(name), [&](double fraction) { fractions.push_back(fraction); });
+    ASSERT_GE(fractions.size(), 2U) << name;
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << name;
+    EXPECT_LT(fractions.front(), 0.9) << name;
+    EXPECT_EQ(fractions.back(), 1.0) << name;
   }
 }
 

@@ -223,13 +223,13 @@ TEST_F(MeshWriter, OurReadersFindWhatIsInLargeClouds) {
         if (has_alpha && formatOf(name) != formatOf("a.pcd") && formatOf(name) != formatOf("a.ply"))
           continue;
         SCOPED_TRACE(std::string(name) + " at " + std::to_string(shift));
-        std::vector<double> shares;
+        std::vector<double> fractions;
         writeTo(directory.file(name), mesh, Encoding::Binary,
-                [&](double share) { shares.push_back(share); });
-        ASSERT_FALSE(shares.empty());
-        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-        EXPECT_GT(shares.front(), 0.0);
-        EXPECT_LE(shares.back(), 1.0);
+                [&](double fraction) { fractions.push_back(fraction); });
+        ASSERT_FALSE(fractions.empty());
+        EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+        EXPECT_GT(fractions.front(), 0.0);
+        EXPECT_LE(fractions.back(), 1.0);
         const PointData read = readCloud(directory.file(name));
         // Text in single precision has no more digits than that needs.
         if (shift == 0.0) {
