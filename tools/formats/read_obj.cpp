@@ -25,12 +25,11 @@ std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
   return static_cast<std::size_t>(index);
 }
 
-/// What of an OBJ file is not known before its end.
+/// The content of an OBJ file. Faces, at its end, say which point has which normal.
 struct ObjContent {
   std::vector<PointColumn> columns;  ///< x y z red green blue
   std::vector<std::array<double, 3>> normals;
-  std::vector<std::optional<std::size_t>> normal_of_point;
-  bool normals_referenced = false;
+  std::vector<std::optional<std::size_t>> normal_of_point;  ///< by the faces; empty: by none
 
   std::size_t points() const { return columns[0].values.size(); }
 };
@@ -46,20 +45,19 @@ void readObjCorner(std::string_view word, ObjContent& content) {
   if (point && normal) {
     content.normal_of_point.resize(content.points());
     content.normal_of_point[*point] = normal;
-    content.normals_referenced = true;
   }
 }
 
 /// Adds the normals, if each point has one.
 void addNormals(ObjContent& content) {
+  const bool by_faces = !content.normal_of_point.empty();
+  if (!by_faces && content.normals.size() != content.points()) {
+    return;
+  }
+  content.normal_of_point.resize(content.points());
   std::vector<PointColumn> columns = {{"nx", false, {}}, {"ny", false, {}}, {"nz", false, {}}};
   for (std::size_t i = 0; i < content.points(); ++i) {
-    std::optional<std::size_t> normal = i;
-    if (content.normals_referenced) {
-      normal = i < content.normal_of_point.size() ? content.normal_of_point[i] : std::nullopt;
-    } else if (content.normals.size() != content.points()) {
-      return;
-    }
+    const std::optional<std::size_t> normal = by_faces ? content.normal_of_point[i] : i;
     if (!normal) {
       return;
     }
