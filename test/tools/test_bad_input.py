@@ -244,7 +244,7 @@ class BadInput(ToolTest):
 
     def test_a_full_disk_or_standard_output_is_a_failure_and_keeps_the_old_file(self):
         full = ": File too large"
-        # Room for no output; or for a mesh, but not for more.
+        # Each size is too small for the file that the message names.
         for size, rows in ((4000, {"reconstruction in.xyz kept.ply": f"cannot write 'kept.ply'{full}",
                                    "texture in.ply a.obj -size 256": full,
                                    "texture in.ply a.glb -size 256": full,

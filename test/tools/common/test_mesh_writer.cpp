@@ -167,7 +167,7 @@ std::vector<Point> cornersOf(const TriangleMesh& mesh) {
 
 class MeshWriter : public testing::Test {
 protected:
-  // There is no curvature in a file.
+  // PCL warns of each file that it has no curvature.
   MeshWriter() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
 
   const TemporaryDirectory directory;
