@@ -9,7 +9,6 @@
 #include "common/text.h"
 #include "spherical_param/version.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,7 +39,7 @@ struct Settings {
   std::string output;
   std::string sphere;   ///< empty: not wanted
   std::string page;     ///< empty: not wanted
-  std::string command;  ///< that does the same again
+  std::string command;  ///< repeats the run
   OutputSettings report;
   ReconstructionSettings reconstruction;
 };
@@ -81,7 +80,7 @@ Settings settingsOf(Settings settings, std::size_t part) {
   return settings;
 }
 
-/// \throw UsageError for names without the numbers that they need, or with some that they do not.
+/// \throw UsageError for a pattern where there is only one file.
 void checkNumbers(const Settings& settings) {
   const bool has_parts = withTopology(settings.reconstruction.options).parts == PartsMode::Each;
   if (isNumbered(settings.output) && !has_parts) {
@@ -125,7 +124,7 @@ std::vector<std::string> outputsOf(const Settings& settings) {
   return outputsOf(settings.report, {settings.output, settings.sphere, settings.page});
 }
 
-/// The members that are the same for the whole cloud and for each of its parts.
+/// The members that reports on the cloud and on each of its parts share.
 Json cloudReport(Settings settings, const CloudReconstruction& cloud) {
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
@@ -149,7 +148,7 @@ Json report(const Settings& settings, const CloudReconstruction& cloud, const Su
   return json;
 }
 
-/// The report on all parts, each with what is said of one surface.
+/// The report on all parts, each with the members of the report on one surface.
 Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
   Json json = cloudReport(settings, cloud);
   json["verdict"] = cloud.result.verdict;
@@ -174,7 +173,7 @@ Json report(const Settings& settings, const CloudReconstruction& cloud) {
   return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
 }
 
-/// The names of the files that are written, and what is not in them.
+/// The names of the files that are written, and what the mesh loses in them.
 std::vector<std::string> writtenFiles(const Settings& settings, const CloudReconstruction& cloud) {
   const std::size_t surfaces = cloud.result.surfaces.size();
   std::vector<std::string> files;
@@ -188,7 +187,7 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
   return files;
 }
 
-/// Prints what was made of each surface.
+/// Prints the tables of each surface. \return the summary of all
 Summary summaryOf(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   std::size_t vertices = 0;
@@ -227,8 +226,8 @@ void writePage(const Settings& settings, CloudReconstruction& cloud, const Surfa
   cloud.stages.push_back(run.console.end());
 }
 
-/// Several surfaces go to one file and page, or to numbered files. A sphere without a number is of
-/// the largest, but for those that one place sees, which are on one sphere.
+/// Writes all surfaces to one file and page, or each to numbered ones. A file of the sphere without
+/// a number holds the largest surface, or all surfaces of a view, which share one sphere.
 void writeFiles(const Settings& settings, CloudReconstruction& cloud, ToolRun& run) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
   const JoinedMesh mesh = joined(cloud.result);

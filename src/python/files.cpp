@@ -46,12 +46,12 @@ tools::PointData toPointData(const Positions& points, const std::optional<Positi
   return data;
 }
 
-tools::Json reportOf(const tools::ReconstructionSettings& settings, const std::string& input,
+tools::Json reportOf(tools::ReconstructionSettings settings, const std::string& input,
                      const tools::CloudReconstruction& cloud, const Surface& surface) {
   tools::Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = input;
-  json["options"] = tools::reconstructionOptionsToJson(settings);
+  json["options"] = tools::optionsToJson(tools::reconstructionOptions(settings));
   json["points"] = cloud.data->points.size();
   json["left_out"] = tools::toJson(cloud.result.left_out);
   json["stages"] = tools::toJson(cloud.stages);

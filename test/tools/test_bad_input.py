@@ -106,6 +106,7 @@ class BadInput(ToolTest):
     def test_options_that_make_no_sense_are_refused(self):
         self.check_ends_refused({
             "reconstruction in.xyz out.ply": {
+                "-view 1,2": "option -view: '1,2'", "-view 1,2,inf": "option -view: '1,2,inf'",
                 "-ki 5": "'-ki'", "-quiet=1": "-quiet", "-x -- -k": "'-x'", "-k": "missing",
                 "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
                 "-tolerance nan": "option -tolerance: 'nan'", "-damping ''": "option -damping: ''",
@@ -192,6 +193,7 @@ class BadInput(ToolTest):
             "reconstruction pipe.ply out.ply": "not a regular file",
             "reconstruction three.xyz out.ply": "at least 4",
             "reconstruction in.xyz out.ply -parts each -min-points 501": "no part has min_points = 501",
+            "reconstruction in.xyz out.ply -view 9,0,0 -smoothing 5": "smoothing cannot be used with a view",
             "reconstruction flat.xyz out.ply -topology sphere":
                 "cannot mesh 'flat.xyz': all points lie in one plane",
             "reconstruction outliers.xyz out.ply -topology sphere -outliers 0":
@@ -242,7 +244,7 @@ class BadInput(ToolTest):
 
     def test_a_full_disk_or_standard_output_is_a_failure_and_keeps_the_old_file(self):
         full = ": File too large"
-        # Room for no output; or for a mesh, but not for more.
+        # Each size is too small for the file that the message names.
         for size, rows in ((4000, {"reconstruction in.xyz kept.ply": f"cannot write 'kept.ply'{full}",
                                    "texture in.ply a.obj -size 256": full,
                                    "texture in.ply a.glb -size 256": full,

@@ -117,7 +117,7 @@ class EveryTool(ToolTest):
                 self.assertTrue(findings)
                 for finding in findings:
                     self.assertTrue(not finding["is_fault"] or finding["text"] in cause, finding)
-        # Where there is none, nothing changes.
+        # Without faults -strict changes nothing.
         run("reconstruction", "other.ply", "out.ply", "-strict", "-quiet")
 
     def test_open_surfaces_stay_open(self):

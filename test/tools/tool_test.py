@@ -18,21 +18,21 @@ def program(tool):
 
 
 def call(tool, *words, **more):
-    """Runs a tool as a user does. What came of it."""
+    """Runs a tool as a user does and returns the process, which has ended."""
     return subprocess.run([program(tool), *map(str, words)],
                           **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "check": False,
                              "timeout": 600, **more})  # fmt: skip
 
 
 def run(tool, *words, code=0, **more):
-    """What a tool prints."""
+    """What a tool prints that ends with this code."""
     done = call(tool, *words, **more)
     assert done.returncode == code, (words, done.returncode, done.stderr)
     return done.stdout + done.stderr
 
 
 def report_of(tool, *words):
-    """What -json reports of a run that has to succeed."""
+    """The report by -json of a run that has to succeed."""
     done = call(tool, *words, "-json", "-")
     assert done.returncode == 0, (words, done.returncode, done.stderr)
     return json.loads(done.stdout)
@@ -43,7 +43,7 @@ def read_json(name):
 
 
 def limited(kind, value):
-    """To run a tool with a limit, such as RLIMIT_FSIZE, which is like a full disk."""
+    """Arguments of call() for a limit, e.g. RLIMIT_FSIZE, which acts like a full disk."""
     return {"preexec_fn": lambda: resource.setrlimit(kind, (value, value))}
 
 
@@ -128,7 +128,7 @@ class Mesh:
 
 
 def nearest(points, others):
-    """Of each point the index of the nearest of others."""
+    """For each point the index of the nearest one of others."""
     return np.array([((others - point) ** 2).sum(axis=1).argmin() for point in points])
 
 
@@ -146,7 +146,7 @@ def lengths(points):
 
 
 def check_surface(triangles, count):
-    """That it is one oriented surface over all vertices. Its Euler characteristic, and its number of open edges."""
+    """Checks for one oriented surface over all vertices. Returns its Euler characteristic and number of open edges."""
     links = [{} for _ in range(count)]  # the next neighbour of each around a vertex
     for corners in triangles.tolist():
         for k in range(3):

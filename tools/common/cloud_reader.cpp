@@ -23,8 +23,8 @@ std::vector<std::string> parseColumns(const std::string& text) {
 PointData readCloud(const std::string& path, const FileProgress& progress,
                     const std::vector<std::string>& columns) {
   const FileFormat format = requireFormat(path, FileUse::ReadCloud);
-  checkInputFile(path);
-  const std::string beginning = readBeginning(path, 2);
+  InputFile file(path, progress);
+  const std::string_view beginning = file.peek(2);
   if (beginning == "\xff\xfe" || beginning == "\xfe\xff") {
     failReading(path, "it is text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
@@ -33,7 +33,7 @@ PointData readCloud(const std::string& path, const FileProgress& progress,
     throw UsageError("-columns names the columns of text, which " + inQuotes(path) + " is not",
                      "leave it out");
   }
-  return format->read_cloud(path, columns, progress);
+  return format->read_cloud(file, columns);
 }
 
 }  // namespace spherical_param::tools

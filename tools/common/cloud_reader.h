@@ -16,7 +16,8 @@ namespace spherical_param::tools {
 /// without a message. Ours are fuzzed (test/fuzz).
 ///
 /// \param progress is called with the fraction that is read; may be empty.
-/// \param columns  of text, from the first on; "-" is left out. Empty: those that it says itself.
+/// \param columns  names of the columns of text, from the first on; "-" leaves one out. Empty: the
+///                 names that the file has.
 /// \throw UsageError, Failure.
 PointData readCloud(const std::string& path, const FileProgress& progress = {},
                     const std::vector<std::string>& columns = {});

@@ -7,7 +7,6 @@
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ struct CloudReconstruction {
   /// All of the file; never null.
   std::shared_ptr<const PointData> data = std::make_shared<PointData>();
   Result result;
-  std::vector<StageTime> stages;  ///< that of reading first
+  std::vector<StageTime> stages;  ///< the first is that of reading
   Point offset{};                 ///< to be subtracted from coordinates that are written
 
   /// The only surface, of tools that make one.

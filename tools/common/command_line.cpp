@@ -14,7 +14,7 @@ constexpr std::size_t help_column = 39;
 constexpr std::size_t help_width = 100;
 constexpr const char* see_help = "run the tool with -h for the options and their values";
 
-/// The least number of letters to insert, leave out or replace that makes one word of another.
+/// The smallest number of letters to insert, leave out or replace that makes one word of another.
 std::size_t editDistance(const std::string& from, const std::string& to) {
   std::vector<std::size_t> row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -98,7 +98,7 @@ Json optionsToJson(const OptionTable& options);
 
 /// The lines of a help text that list the options.
 ///
-/// \param with_experts those of experts, too, in a list of their own; else a line that leads to it.
+/// \param with_experts lists the options of experts, too; else the last line says how to list them.
 std::string describeOptions(const OptionTable& options, bool with_experts);
 
 /// A command line in the style of the PCL tools: `-opt value`, `--opt value`, `-opt=value` and
@@ -122,7 +122,7 @@ public:
 
   /// Sets all options that were given. \throw UsageError
   void apply(const OptionTable& options) const;
-  /// \throw UsageError if an option was given that does nothing with something else
+  /// \throw UsageError if one of the options was given: it has no effect with `with`.
   void refuse(const std::vector<std::string>& options, const std::string& with,
               const std::string& instead) const;
 

@@ -19,7 +19,7 @@ enum class Detail {
   All,      ///< options, stages and tables before these lines
 };
 
-/// What a run has come to.
+/// The result of a run.
 struct Summary {
   std::string read;                  ///< the inputs and their size
   std::string verdict;               ///< one sentence
@@ -46,13 +46,13 @@ public:
 
   /// Begins a stage.
   void begin(const std::string& stage);
-  /// How much of the stage is done, in [0, 1], and of the run, in [0, 1]; 0: not known.
+  /// Shows the fractions of the stage and of the run that are done, in [0, 1]. `of_run` 0: unknown.
   void update(double fraction, double of_run = 0.0);
-  /// Prints what is known of the input; a text once.
+  /// Prints a remark on the input, each text once.
   void remark(const std::string& text);
   /// Begins one of several parts of the input.
   void beginPart(const std::string& part);
-  /// For functions that report their progress: their part of the stage.
+  /// What functions that report their progress are to call: theirs is a part of the stage.
   FileProgress updates(double from = 0.0, double to = 1.0);
   std::function<bool(const Progress&)> progress(double to = 1.0);
   /// Ends the stage. \return its name and time

@@ -34,7 +34,7 @@ struct ErrorOf : ToolError {
 };
 /// The work could not be done.
 using Failure = ErrorOf<ExitCode::Failed>;
-/// The command line makes no sense, whatever the files hold.
+/// The command line is wrong, even without a look at the files.
 using UsageError = ErrorOf<ExitCode::Usage>;
 
 /// A message of the library, "function: cause; remedy" or "cause; remedy", for the user of a tool,

@@ -52,12 +52,14 @@ constexpr std::array foreign_formats = {
 
 /// The extension that belongs to the content of a file; empty if it is not known.
 std::string extensionOfContent(const std::string& path) {
-  constexpr std::size_t most_bytes = 4096;
+  constexpr std::size_t max_bytes = 4096;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
+  if (!std::filesystem::is_regular_file(path, error) ||
+      std::filesystem::file_size(path, error) == 0) {
     return "";
   }
-  const std::string content = readBeginning(path, most_bytes);
+  InputFile file(path);
+  const std::string_view content = file.peek(max_bytes);
   const auto begins = [&](std::string_view text) {
     return !text.empty() && content.compare(0, text.size(), text) == 0;
   };
@@ -75,7 +77,7 @@ std::string extensionOfContent(const std::string& path) {
   if (lowerCase(content.substr(0, 5)) == "ncols") {
     return ".agr";
   }
-  const std::string word = content.substr(0, content.find_first_of(" \r\n"));
+  const std::string_view word = content.substr(0, content.find_first_of(" \r\n"));
   if (word.size() >= 3 && word.size() < 8 && word.find("OFF") == word.size() - 3) {
     return ".off";
   }

@@ -9,7 +9,7 @@ namespace spherical_param::tools {
 /// A row of the table of formats.
 using FileFormat = const FormatRow*;
 
-/// What a file is wanted for.
+/// What a file is used for.
 enum class FileUse { ReadCloud, WriteCloud, WriteMesh };
 
 /// The format that the extension stands for, in upper or lower case; null if it is unknown.
@@ -21,8 +21,8 @@ std::string extensionsFor(FileUse use);
 /// The extension of a file with its dot, in lower case.
 std::string extensionOf(const std::string& path);
 
-/// The format of a file that is wanted for a use: by its extension; a file of points that is text,
-/// or whose extension is not known, by its content.
+/// The format of a file, by its extension. If points are read from text, or from a file with an
+/// unknown extension, the content decides.
 ///
 /// \param others further extensions that the tool takes, e.g. " .tif".
 /// \throw UsageError if the extension is unknown or its format cannot be used that way.

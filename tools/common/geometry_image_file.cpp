@@ -117,7 +117,7 @@ std::string headOf(std::uint32_t side, std::uint32_t rows_per_strip, std::uint32
 class TiffReader {
 public:
   explicit TiffReader(const std::string& path)
-      : path_(path), size_(checkInputFile(path)), file_(path, std::ios::binary) {
+      : path_(path), size_(InputFile(path).size()), file_(path, std::ios::binary) {
     const std::string mark = read(0, std::min<std::uint64_t>(8, size_));
     swapped_ = mark.substr(0, 2) != byteOrderMark();
     if (mark.size() < 8 || (mark.substr(0, 2) != "II" && mark.substr(0, 2) != "MM") ||

@@ -1,5 +1,6 @@
 #include "common/json_report.h"
 
+#include <cstdint>
 #include <fstream>
 
 namespace spherical_param::tools {
@@ -16,7 +17,7 @@ Json toJson(const std::vector<StageTime>& stages) {
   return json;
 }
 
-std::optional<std::uint64_t> peakMemory() {
+Json peakMemoryToJson() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
     std::uint64_t kibibytes = 0;
@@ -24,12 +25,7 @@ std::optional<std::uint64_t> peakMemory() {
       return kibibytes * 1024;
     }
   }
-  return std::nullopt;
-}
-
-Json peakMemoryToJson() {
-  const std::optional<std::uint64_t> peak_memory = peakMemory();
-  return peak_memory ? Json(*peak_memory) : Json(nullptr);
+  return nullptr;
 }
 
 std::string textOf(const Json& report) {

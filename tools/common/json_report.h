@@ -5,8 +5,6 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +16,11 @@ using Json = nlohmann::ordered_json;
 Json toJson(const Eigen::Vector3d& vector);
 Json toJson(const std::vector<StageTime>& stages);
 
-/// Largest resident memory of this program so far [bytes]; nothing where the system does not report
+/// Largest resident memory of this program so far [bytes]; null where the system does not report
 /// it.
 ///
 /// Unlike ru_maxrss of getrusage(), it does not begin with the memory of the process that started
 /// this one.
-std::optional<std::uint64_t> peakMemory();
-/// The same, or null.
 Json peakMemoryToJson();
 
 /// The text of a report, as it is written.

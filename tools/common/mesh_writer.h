@@ -33,7 +33,7 @@ bool needsDouble(const PointData& data);
 /// \param format null: one that has no mesh.
 Point offsetFor(const PointData& data, FileFormat format, Encoding encoding);
 
-/// What is not in the file of a mesh: " (without colours, less 1000, 0, 0)"; empty if all is.
+/// What a mesh loses in its file, e.g. " (without colours, less 1000, 0, 0)"; empty: nothing.
 ///
 /// \param has_colors of the mesh.
 std::string notWritten(bool has_colors, const std::string& path, const Point& offset);

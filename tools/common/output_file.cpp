@@ -33,8 +33,8 @@ std::string resolveLinks(const std::string& path) {
   // Of a relative path that does not exist, weakly_canonical() alone would leave "./" or not.
   fs::path current = fs::absolute(path, error);
   // Nor does it follow a link to a file that is not there yet.
-  constexpr int most_links = 40;
-  for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(current, error)); ++i) {
+  constexpr int max_links = 40;
+  for (int i = 0; i < max_links && fs::is_symlink(fs::symlink_status(current, error)); ++i) {
     current = current.parent_path() / fs::read_symlink(current, error);
   }
   const fs::path resolved = fs::weakly_canonical(current, error);

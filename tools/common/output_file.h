@@ -44,7 +44,7 @@ private:
   void createTemporary();
   [[noreturn]] void fail(const std::string& action, const std::error_code& error) const;
 
-  std::string path_;                              ///< as the user knows it
+  std::string path_;                              ///< as the user gave it
   std::string target_;                            ///< behind symbolic links
   std::string temporary_;                         ///< empty: written directly
   std::optional<std::filesystem::perms> rights_;  ///< of the file that it replaces

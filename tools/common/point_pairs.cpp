@@ -30,18 +30,19 @@ int nearestTo(const Eigen::Vector3d& place, const CloudReconstruction& cloud) {
 
 std::vector<FilePair> readPointPairs(const std::string& path, const CloudReconstruction& first,
                                      const CloudReconstruction& second) {
-  const std::uint64_t size = checkInputFile(path);
-  if (size > most_bytes) {
-    failContent(path, "it has " + std::to_string(size) + " bytes, which are no list of pairs");
+  InputFile file(path);
+  if (file.size() > most_bytes) {
+    failContent(path,
+                "it has " + std::to_string(file.size()) + " bytes, which are no list of pairs");
   }
   std::vector<FilePair> pairs;
   Words words;
-  forEachLine(path, {}, [&](std::size_t line, std::string_view content) {
-    split(withoutRemark(content), " \t\r,;", words);
+  for (std::string_view line; file.nextLine(line);) {
+    split(withoutRemark(line), " \t\r,;", words);
     if (words.empty()) {
-      return;
+      continue;
     }
-    const std::string place = inQuotes(path) + ", line " + std::to_string(line) + ": ";
+    const std::string place = inQuotes(path) + ", line " + std::to_string(file.lineNumber()) + ": ";
     const auto require = [&](bool holds, const std::string& what) {
       if (!holds) {
         throw Failure(place + what + " make no pair",
@@ -58,7 +59,7 @@ std::vector<FilePair> readPointPairs(const std::string& path, const CloudReconst
       values.push_back(*value);
     }
     FilePair& pair = pairs.emplace_back();
-    pair.line = line;
+    pair.line = file.lineNumber();
     for (std::size_t side = 0; side < 2; ++side) {
       const CloudReconstruction& cloud = side == 0 ? first : second;
       const std::size_t count = cloud.data->points.size();
@@ -71,7 +72,7 @@ std::vector<FilePair> readPointPairs(const std::string& path, const CloudReconst
                                       : nearestTo(Eigen::Vector3d(&values[3 * side]), cloud);
       pair.vertices[side] = cloud.surface().vertexOf(pair.points[side]);
     }
-  });
+  }
   return pairs;
 }
 

@@ -100,8 +100,7 @@ void takeNormals(Columns& columns, PointData& data) {
 
 constexpr std::string_view around_names = " \t\r\"'/#%!";
 
-/// A name in lower case without its unit; as much of it as matters, which no expression is too long
-/// for.
+/// A name in lower case without its unit, cut to a length that is safe for regular expressions.
 std::string plainName(std::string_view name) {
   constexpr std::size_t longest = 100;
   return lowerCase(

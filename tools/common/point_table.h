@@ -2,7 +2,6 @@
 
 #include "common/point_data.h"
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +11,7 @@ namespace spherical_param::tools {
 /// A column of a file, with a value for each point.
 struct PointColumn {
   std::string name;      ///< as the file has it; empty: the column is left out
-  bool is_byte = false;  ///< its values are 0 ... 255, whatever they are
+  bool is_byte = false;  ///< its values are 0 ... 255, even if none is above 1
   std::vector<double> values;
 };
 
@@ -38,7 +37,7 @@ Scalar makeScalar(std::string_view name, std::vector<double> values);
 /// - the others are scalars.
 ///
 /// Colours of other types than bytes go up to 1, 255 or 65535, whichever holds the largest. Normals
-/// that are all zero, or not finite, are none.
+/// are left out if all of them are zero or not finite.
 PointData toPoints(std::vector<PointColumn> columns);
 
 }  // namespace spherical_param::tools

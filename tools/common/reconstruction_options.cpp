@@ -80,8 +80,4 @@ void parseReconstructionOptions(const CommandLine& command_line, ReconstructionS
   threads = threads == 0 ? internal::processorCount() : threads;
 }
 
-Json reconstructionOptionsToJson(ReconstructionSettings settings) {
-  return optionsToJson(reconstructionOptions(settings));
-}
-
 }  // namespace spherical_param::tools

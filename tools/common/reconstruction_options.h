@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/command_line.h"
-#include "common/json_report.h"
 #include "spherical_param/options.h"
 
 #include <string>
@@ -13,7 +12,7 @@ namespace spherical_param::tools {
 struct ReconstructionSettings {
   Options options;                   ///< the number of threads is never 0
   bool strict = false;               ///< faults are a failure, see Findings
-  std::vector<std::string> columns;  ///< of text files; empty: those that they say themselves
+  std::vector<std::string> columns;  ///< names, of text files; empty: those that the file has
 };
 
 /// The options of the library's table, -columns and -strict.
@@ -22,8 +21,5 @@ OptionTable reconstructionOptions(ReconstructionSettings& settings);
 /// Refuses options that were given but would have no effect, and finds the number of threads.
 /// \throw UsageError
 void parseReconstructionOptions(const CommandLine& command_line, ReconstructionSettings& settings);
-
-/// The values of the options; null if unset or without effect.
-Json reconstructionOptionsToJson(ReconstructionSettings settings);
 
 }  // namespace spherical_param::tools

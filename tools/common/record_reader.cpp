@@ -36,12 +36,11 @@ double bitsOf(double value, char type) {
 ///
 /// \param packed_size bytes of the file. \param size what they should make.
 /// \return none if they are broken, or make another number of bytes.
-std::optional<std::string> unpackLzf(BlockReader& reader, std::uint64_t packed_size,
-                                     std::size_t size) {
+std::optional<std::string> unpackLzf(InputFile& file, std::uint64_t packed_size, std::size_t size) {
   std::string bytes;
   bytes.reserve(size);
   const auto take = [&](std::size_t count) {
-    const char* const taken = count <= packed_size ? reader.take(count) : nullptr;
+    const char* const taken = count <= packed_size ? file.take(count) : nullptr;
     packed_size -= taken != nullptr ? count : 0;
     return taken;
   };
@@ -85,9 +84,7 @@ std::optional<std::string> unpackLzf(BlockReader& reader, std::uint64_t packed_s
 
 class RecordReader {
 public:
-  RecordReader(const std::string& path, const RecordLayout& layout, const FileProgress& progress)
-      : path_(path), layout_(layout), reader_(path, layout.body, progress),
-        line_number_(layout.body_line) {}
+  RecordReader(InputFile& file, const RecordLayout& layout) : file_(file), layout_(layout) {}
 
   PointData read() {
     PointData data;
@@ -99,7 +96,7 @@ public:
         break;
       } else if (!canSkip(element)) {
         if (data.points.empty()) {
-          failContent(path_, problem_);
+          failContent(file_.path(), problem_);
         }
         break;
       }
@@ -131,7 +128,7 @@ private:
       columns.back().values.reserve(static_cast<std::size_t>(element.count));
     }
     if (findColumns(columns, {"x", "y", "z"}).empty()) {
-      failContent(path_, "it has no points with x, y and z");
+      failContent(file_.path(), "it has no points with x, y and z");
     }
     unpack(element);
     const auto take = [&](std::size_t field, double value) {
@@ -142,7 +139,7 @@ private:
     const auto is_wanted = [&](std::size_t field) { return column_of_field[field] >= 0; };
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!next(points, is_wanted, take)) {
-        failContent(path_, problem_);
+        failContent(file_.path(), problem_);
       }
     }
     return toPoints(std::move(columns));
@@ -205,7 +202,7 @@ private:
       }
       if (!is_wanted(f)) {
         word += isText() ? static_cast<std::size_t>(count) : 0;
-        if (!isText() && !isPacked() && !reader_.skip(count * field.size)) {
+        if (!isText() && !isPacked() && !file_.skip(count * field.size)) {
           return fail(broken);
         }
         continue;
@@ -213,8 +210,8 @@ private:
       for (; count > 0; --count) {
         const std::optional<double> value = nextValue(field, word, f);
         if (!value) {
-          return fail(isText() ? "line " + std::to_string(line_number_) + " has no number for " +
-                                     inQuotes(field.name)
+          return fail(isText() ? "line " + std::to_string(file_.lineNumber()) +
+                                     " has no number for " + inQuotes(field.name)
                                : broken);
         }
         take(f, *value);
@@ -238,7 +235,7 @@ private:
     }
     const char* const bytes = isPacked()
                                   ? &unpacked_[begin_of_field_[f] + next_record_ * field.size]
-                                  : reader_.take(field.size);
+                                  : file_.take(field.size);
     return bytes == nullptr ? std::nullopt : std::optional(valueOf(field, bytes));
   }
 
@@ -280,9 +277,9 @@ private:
       begin_of_field_.push_back(size);
       size += static_cast<std::size_t>(element.count) * field.size * field.count;
     }
-    std::optional<std::string> bytes = unpackLzf(reader_, layout_.packed_size, size);
+    std::optional<std::string> bytes = unpackLzf(file_, layout_.packed_size, size);
     if (!bytes) {
-      failContent(path_, broken);
+      failContent(file_.path(), broken);
     }
     unpacked_ = std::move(*bytes);
   }
@@ -291,10 +288,9 @@ private:
   bool nextWords(const RecordElement& element) {
     std::string_view line;
     do {
-      if (!reader_.nextLine(line)) {
+      if (!file_.nextLine(line)) {
         return false;
       }
-      ++line_number_;
       split(line, " \t\r", words_);
     } while (words_.empty() || words_[0][0] == '#');
     if (line.find(',') == std::string_view::npos) {
@@ -314,10 +310,8 @@ private:
     return true;
   }
 
-  const std::string& path_;
+  InputFile& file_;
   const RecordLayout& layout_;
-  BlockReader reader_;
-  std::size_t line_number_;
   std::vector<std::string_view> words_;
   std::string problem_;   ///< of the record that could not be read
   std::string unpacked_;  ///< all values of a field, then those of the next
@@ -327,9 +321,8 @@ private:
 
 }  // namespace
 
-PointData readRecords(const std::string& path, const RecordLayout& layout,
-                      const FileProgress& progress) {
-  return RecordReader(path, layout, progress).read();
+PointData readRecords(InputFile& file, const RecordLayout& layout) {
+  return RecordReader(file, layout).read();
 }
 
 }  // namespace spherical_param::tools

@@ -32,20 +32,16 @@ struct RecordElement {
 /// What a file has, as its header says.
 struct RecordLayout {
   RecordStorage storage = RecordStorage::Text;
-  std::uint64_t body = 0;               ///< bytes before the first record
-  std::size_t body_line = 0;            ///< lines before the first record
   std::uint64_t packed_size = 0;        ///< bytes of the file, if they are packed
   std::vector<RecordElement> elements;  ///< in their order; one is "vertex", and perhaps one "face"
 };
 
-/// Reads the points of a PLY, PCD or OFF file, with no more memory than they, a block of the file
-/// and the words of its longest line take, and all fields where they are packed. PCL's readers have
-/// the file, its fields and the points in memory, all at a time, take up to ten times as long for
-/// text, and read what a broken file makes them read.
+/// Reads the points of a PLY, PCD or OFF file. In memory are the points, a block of the file and
+/// its longest line; of packed files, all fields. PCL's readers hold file, fields and points in
+/// memory at the same time, take up to ten times as long for text, and trust a broken file.
 ///
-/// \param layout compared with the size of the file.
+/// \param file   behind its header. \param layout compared with the size of the file.
 /// \throw Failure if the file is shorter than its header says, or has words for numbers.
-PointData readRecords(const std::string& path, const RecordLayout& layout,
-                      const FileProgress& progress);
+PointData readRecords(InputFile& file, const RecordLayout& layout);
 
 }  // namespace spherical_param::tools

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iterator>
@@ -240,7 +239,7 @@ void ToolRun::addFailure(const std::string& failure) {
 }
 
 void ToolRun::conclude(bool is_usable, const std::string& page_option) {
-  constexpr std::size_t most_printed = 12;
+  constexpr std::size_t max_printed = 12;
   std::size_t count = 0;
   std::string faults;
   std::fflush(stdout);
@@ -253,12 +252,12 @@ void ToolRun::conclude(bool is_usable, const std::string& page_option) {
     }
     if (strict_ && finding.is_fault) {
       faults += (faults.empty() ? "" : "; ") + oneLine(line);
-    } else if (!settings_.quiet && !finding.is_consequence && ++count <= most_printed) {
+    } else if (!settings_.quiet && !finding.is_consequence && ++count <= max_printed) {
       std::fprintf(stderr, "warning: %s\n", oneLine(line).c_str());
     }
   }
-  if (count > most_printed) {
-    std::fprintf(stderr, "warning: %zu more, which -json lists\n", count - most_printed);
+  if (count > max_printed) {
+    std::fprintf(stderr, "warning: %zu more, which -json lists\n", count - max_printed);
   }
   if (!faults.empty()) {
     throw ToolError(is_usable ? ExitCode::Failed : ExitCode::NotUsable, faults,

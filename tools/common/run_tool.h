@@ -54,7 +54,7 @@ struct OutputSettings {
 
 OptionTable outputOptions(OutputSettings& settings);
 
-/// The names of the files that a tool makes, with that of the report: those that are not empty.
+/// Those names of files that a tool makes that are not empty, and that of the report.
 std::vector<std::string> outputsOf(const OutputSettings& settings,
                                    const std::vector<std::string>& names);
 

@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <clocale>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <thread>
 
@@ -57,10 +58,6 @@ std::FILE* createFile(const std::string& path, std::filesystem::perms) {
 
 std::FILE* openDevice(const std::string& path) {
   return std::fopen(path.c_str(), "wb");
-}
-
-bool seek(std::FILE& file, std::uint64_t position) {
-  return _fseeki64(&file, static_cast<std::int64_t>(position), SEEK_SET) == 0;
 }
 
 int writeRefusal(const std::string& path) {
@@ -135,10 +132,6 @@ std::FILE* createFile(const std::string& path, std::filesystem::perms rights) {
 
 std::FILE* openDevice(const std::string& path) {
   return openToWrite(path, 0, 0);
-}
-
-bool seek(std::FILE& file, std::uint64_t position) {
-  return fseeko(&file, static_cast<off_t>(position), SEEK_SET) == 0;
 }
 
 int writeRefusal(const std::string& path) {

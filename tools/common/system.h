@@ -1,7 +1,6 @@
 #pragma once
 
 #include <charconv>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -18,8 +17,8 @@ bool isTerminal();
 /// meant for the terminal would be written into a mesh.
 void occupyStandardStreams();
 
-/// Leaves memory that is freed with the process: to give it back and to take it anew is a tenth of
-/// the time of ten million points.
+/// Keeps freed memory in the process: for large clouds, to return it to the system and to request
+/// it again takes a noticeable part of the time.
 void keepMemory();
 
 /// Calls a function when the user or the system ends the tool. It is to call the function that it
@@ -35,18 +34,14 @@ std::FILE* createFile(const std::string& path, std::filesystem::perms rights);
 /// Opens what exists, such as a pipe or a device, for writing. \return null: see errno
 std::FILE* openDevice(const std::string& path);
 
-/// Goes to a byte of a file, also behind 2 GB. \return false: see errno
-bool seek(std::FILE& file, std::uint64_t position);
-
-/// Why a file cannot be written or a directory takes no files: an error of errno, or 0.
+/// The error of errno that prevents writing a file, or creating one in a directory; 0: none.
 int writeRefusal(const std::string& path);
 
 /// Whether a file cannot grow, for the disk, its quota or a limit.
 bool isLackOfSpace(const std::error_code& error);
 
 #ifndef __cpp_lib_to_chars
-/// strtod() in the locale "C", whatever the program's is, for libraries whose from_chars() reads no
-/// real numbers.
+/// strtod() in the locale "C", for libraries whose from_chars() reads no real numbers.
 double strtodInC(const char* text, char** end);
 #endif
 

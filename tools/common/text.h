@@ -35,7 +35,7 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 void split(std::string_view text, std::string_view separators,
            std::vector<std::string_view>& parts);
 
-/// The number that a text consists of, whatever the locale. A number too large for a double is
+/// The number that a text consists of, in any locale. A number too large for a double is
 /// infinite; none if anything but the number is in the text.
 std::optional<double> toReal(std::string_view text);
 
@@ -49,7 +49,7 @@ std::optional<std::int64_t> toInteger(std::string_view text);
 /// A number as people write it, e.g. "49,996".
 std::string grouped(std::size_t number);
 
-/// A number with zeros before it, that many digits at least.
+/// A number of at least `digits` digits, with zeros before it.
 std::string withZeros(std::size_t number, std::size_t digits);
 
 /// A number with its noun, e.g. "1 point", "2,000 points".

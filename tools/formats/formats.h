@@ -15,8 +15,7 @@ namespace spherical_param::tools {
 enum class Encoding { Binary, Ascii };
 
 /// \param columns of text, as the user names them; empty: those that the file says.
-using CloudReader = PointData(const std::string& path, const std::vector<std::string>& columns,
-                              const FileProgress& progress);
+using CloudReader = PointData(InputFile& file, const std::vector<std::string>& columns);
 using MeshFormatWriter = void(RecordWriter& writer, const MeshView& mesh, Encoding encoding);
 
 /// A file format, named by the extension of a file. Functions that do not exist are null.

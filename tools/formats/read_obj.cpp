@@ -2,7 +2,6 @@
 #include "formats/formats.h"
 #include "formats/text_lines.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -26,12 +25,11 @@ std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
   return static_cast<std::size_t>(index);
 }
 
-/// What of an OBJ file is not known before its end.
+/// The content of an OBJ file. Faces, at its end, say which point has which normal.
 struct ObjContent {
   std::vector<PointColumn> columns;  ///< x y z red green blue
   std::vector<std::array<double, 3>> normals;
-  std::vector<std::optional<std::size_t>> normal_of_point;
-  bool normals_referenced = false;
+  std::vector<std::optional<std::size_t>> normal_of_point;  ///< by the faces; empty: by none
 
   std::size_t points() const { return columns[0].values.size(); }
 };
@@ -47,20 +45,19 @@ void readObjCorner(std::string_view word, ObjContent& content) {
   if (point && normal) {
     content.normal_of_point.resize(content.points());
     content.normal_of_point[*point] = normal;
-    content.normals_referenced = true;
   }
 }
 
 /// Adds the normals, if each point has one.
 void addNormals(ObjContent& content) {
+  const bool by_faces = !content.normal_of_point.empty();
+  if (!by_faces && content.normals.size() != content.points()) {
+    return;
+  }
+  content.normal_of_point.resize(content.points());
   std::vector<PointColumn> columns = {{"nx", false, {}}, {"ny", false, {}}, {"nz", false, {}}};
   for (std::size_t i = 0; i < content.points(); ++i) {
-    std::optional<std::size_t> normal = i;
-    if (content.normals_referenced) {
-      normal = i < content.normal_of_point.size() ? content.normal_of_point[i] : std::nullopt;
-    } else if (content.normals.size() != content.points()) {
-      return;
-    }
+    const std::optional<std::size_t> normal = by_faces ? content.normal_of_point[i] : i;
     if (!normal) {
       return;
     }
@@ -75,27 +72,24 @@ void addNormals(ObjContent& content) {
 
 /// Wavefront OBJ: the vertices, with colours (v x y z r g b), and normals as the faces refer to
 /// them, or in the order of the vertices if no face does. PCL's reader is not used: it drops the
-/// colours and takes the normals in their order, whatever the faces say.
-PointData readObj(const std::string& path, const std::vector<std::string>& /*columns*/,
-                  const FileProgress& progress) {
+/// colours and takes the normals in their order, against the faces.
+PointData readObj(InputFile& file, const std::vector<std::string>& /*columns*/) {
   ObjContent content;
-  const std::size_t count = countLines(path, "v ");
+  const std::size_t count = countLines(file.path(), "v ");
   for (const char* name : {"x", "y", "z", "red", "green", "blue"}) {
     content.columns.push_back({name, false, {}});
     content.columns.back().values.reserve(content.columns.size() > 3 ? 0 : count);
   }
   Words words;
-  forEachLine(path, progress, [&](std::size_t line, std::string_view text) {
-    split(withoutRemark(text), " \t\r", words);
+  for (std::string_view line; file.nextLine(line);) {
+    split(withoutRemark(line), " \t\r", words);
     if (words.empty()) {
-      return;
+      continue;
     }
-    if (words[0] == "v" || words[0] == "vn") {
-      const auto values = requireThreeNumbers(path, line, words, 1);
-      if (words[0] == "vn") {
-        content.normals.push_back(values);
-        return;
-      }
+    if (words[0] == "vn") {
+      content.normals.push_back(requireThreeNumbers(file, words));
+    } else if (words[0] == "v") {
+      const auto values = requireThreeNumbers(file, words);
       const auto color = threeNumbers(words, 4);
       for (std::size_t d = 0; d < 3; ++d) {
         content.columns[d].values.push_back(values[d]);
@@ -109,11 +103,11 @@ PointData readObj(const std::string& path, const std::vector<std::string>& /*col
       }
     } else if (words[0].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
                                           "0123456789/.-\\") != std::string_view::npos) {
-      failContent(path, "line " + std::to_string(line) + " is not a statement of an OBJ file");
+      failLine(file, "is not a statement of an OBJ file");
     }
-  });
+  }
   if (content.points() == 0) {
-    failContent(path, "it has no points");
+    failContent(file.path(), "it has no points");
   }
   addNormals(content);
   if (content.columns[3].values.size() != content.points()) {

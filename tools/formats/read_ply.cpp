@@ -1,6 +1,6 @@
 #include "common/record_reader.h"
 #include "formats/formats.h"
-#include "formats/header_lines.h"
+#include "formats/text_lines.h"
 
 #include <algorithm>
 #include <map>
@@ -28,18 +28,18 @@ RecordField fieldOf(std::string_view type) {
 }
 
 /// The property that a line of a header describes.
-RecordField parseProperty(const std::string& path, const std::vector<std::string_view>& words) {
+RecordField parseProperty(const InputFile& file, const Words& words) {
   const bool is_list = words.size() > 1 && words[1] == "list";
   const std::size_t expected = is_list ? 5 : 3;
   if (words.size() != expected) {
-    failContent(path, "its header has a broken property");
+    failContent(file.path(), "its header has a broken property");
   }
   RecordField field = fieldOf(words[expected - 2]);
   field.name = words[expected - 1];
   if (is_list) {
     const RecordField length = fieldOf(words[2]);
     if (length.type != 'I' && length.type != 'U') {
-      failContent(path, "its header has the unknown type " + inQuotes(words[2]));
+      failContent(file.path(), "its header has the unknown type " + inQuotes(words[2]));
     }
     field.length_size = length.size;
   }
@@ -47,9 +47,10 @@ RecordField parseProperty(const std::string& path, const std::vector<std::string
 }
 
 /// The entries of a header, up to its end.
-RecordLayout parseHeader(const std::string& path, Lines& lines) {
-  if (!lines.next() || lines.words().size() != 1 || lines.words()[0] != "ply") {
-    failContent(path, "it does not begin as a PLY file does");
+RecordLayout parseHeader(InputFile& file) {
+  Words words;
+  if (!nextWords(file, words) || words.size() != 1 || words[0] != "ply") {
+    failContent(file.path(), "it does not begin as a PLY file does");
   }
   static const std::map<std::string_view, RecordStorage> storages = {
       {"ascii", RecordStorage::Text},
@@ -57,36 +58,38 @@ RecordLayout parseHeader(const std::string& path, Lines& lines) {
       {"binary_big_endian", RecordStorage::BigEndian}};
   RecordLayout layout;
   bool has_storage = false;
-  while (lines.next() && (lines.words().empty() || lines.words()[0] != "end_header")) {
-    const auto& words = lines.words();
+  bool has_end = false;
+  while (!has_end && nextWords(file, words)) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     }
-    if (words[0] == "format" && words.size() == 3 && words[2] == "1.0") {
+    if (words[0] == "end_header") {
+      has_end = true;
+    } else if (words[0] == "format" && words.size() == 3 && words[2] == "1.0") {
       const auto storage = storages.find(words[1]);
       has_storage = storage != storages.end();
       layout.storage = has_storage ? storage->second : layout.storage;
     } else if (words[0] == "element" && words.size() == 3) {
       layout.elements.push_back(
           {std::string(words[1]),
-           static_cast<std::uint64_t>(requireCount(path, words[2], "elements")),
+           static_cast<std::uint64_t>(requireCount(file, words[2], "elements")),
            {}});
     } else if (words[0] == "property" && !layout.elements.empty()) {
-      layout.elements.back().fields.push_back(parseProperty(path, words));
+      layout.elements.back().fields.push_back(parseProperty(file, words));
     } else {
-      failContent(path, "its header has the unknown entry " + inQuotes(words[0]));
+      failContent(file.path(), "its header has the unknown entry " + inQuotes(words[0]));
     }
   }
-  if (lines.words().empty() || lines.words()[0] != "end_header") {
-    failContent(path, "its header has no end");
+  if (!has_end) {
+    failContent(file.path(), "its header has no end");
   }
   if (!has_storage) {
-    failContent(path, "its format is neither ascii nor binary 1.0");
+    failContent(file.path(), "its format is neither ascii nor binary 1.0");
   }
   return layout;
 }
 
-void checkPoints(const std::string& path, const std::vector<RecordElement>& elements) {
+void checkPoints(const InputFile& file, const std::vector<RecordElement>& elements) {
   int kinds = 0;
   for (const RecordElement& element : elements) {
     if (element.name != "vertex") {
@@ -95,51 +98,43 @@ void checkPoints(const std::string& path, const std::vector<RecordElement>& elem
     std::set<std::string> names;
     for (const RecordField& field : element.fields) {
       if (!names.insert(field.name).second) {
-        failContent(path, "its vertices have the property " + inQuotes(field.name) + " twice");
+        failContent(file.path(),
+                    "its vertices have the property " + inQuotes(field.name) + " twice");
       }
     }
     ++kinds;
     if (element.count == 0 || element.fields.empty()) {
-      failContent(path, "it has no points");
+      failContent(file.path(), "it has no points");
     }
   }
   if (kinds != 1) {
-    failContent(path, "it has no vertices");
+    failContent(file.path(), "it has no vertices");
   }
 }
 
-RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
-  const std::string beginning = readBeginning(path, header_limit);
-  Lines lines(beginning);
-  RecordLayout layout = parseHeader(path, lines);
-  checkPoints(path, layout.elements);
+}  // namespace
+
+PointData readPly(InputFile& file, const std::vector<std::string>& /*columns*/) {
+  RecordLayout layout = parseHeader(file);
+  checkPoints(file, layout.elements);
   const bool is_text = layout.storage == RecordStorage::Text;
   double least_size = is_text ? -1.0 : 0.0;  // the last number needs no separator
   for (const RecordElement& element : layout.elements) {
     for (const RecordField& field : element.fields) {
       if (field.type == 'T' && !is_text) {
-        failContent(path, "its header has an unknown type, of " + inQuotes(field.name));
+        failContent(file.path(), "its header has an unknown type, of " + inQuotes(field.name));
       }
       // The shortest list is its length alone; the shortest text a digit and a separator.
       const std::size_t size = field.length_size > 0 ? field.length_size : field.size;
       least_size += static_cast<double>(element.count) * static_cast<double>(is_text ? 2 : size);
     }
   }
-  requireBytes(path, least_size, bytesBehind(lines, file_size));
+  requireBytes(file, least_size);
   // Without properties there is nothing to read, however many there are.
   const auto is_empty = [](const RecordElement& element) { return element.fields.empty(); };
   layout.elements.erase(std::remove_if(layout.elements.begin(), layout.elements.end(), is_empty),
                         layout.elements.end());
-  layout.body = lines.position();
-  layout.body_line = lines.number();
-  return layout;
-}
-
-}  // namespace
-
-PointData readPly(const std::string& path, const std::vector<std::string>& /*columns*/,
-                  const FileProgress& progress) {
-  return readRecords(path, checkPlyHeader(path, checkInputFile(path)), progress);
+  return readRecords(file, layout);
 }
 
 }  // namespace spherical_param::tools

@@ -1,5 +1,4 @@
 #include "formats/formats.h"
-#include "formats/header_lines.h"
 #include "formats/text_lines.h"
 
 #include <array>
@@ -11,12 +10,10 @@
 namespace spherical_param::tools {
 
 /// STL, text or binary: the corners of the triangles, each place once.
-PointData readStl(const std::string& path, const std::vector<std::string>& /*columns*/,
-                  const FileProgress& progress) {
+PointData readStl(InputFile& file, const std::vector<std::string>& /*columns*/) {
   constexpr std::size_t header_size = 84;  // a title, and the number of triangles
   constexpr std::size_t record_size = 50;  // a normal, three corners, and two bytes
-  const std::uint64_t file_size = checkInputFile(path);
-  const std::string header = readBeginning(path, header_size);
+  const std::string header(file.peek(header_size));
   std::uint32_t triangles = 0;
   if (header.size() == header_size) {
     std::memcpy(&triangles, &header[header_size - sizeof triangles], sizeof triangles);
@@ -41,21 +38,21 @@ PointData readStl(const std::string& path, const std::vector<std::string>& /*col
     }
   };
   // The title of a binary file may begin as text does.
-  if (lowerCase(header.substr(0, 5)) == "solid" && size != file_size) {
+  if (lowerCase(header.substr(0, 5)) == "solid" && size != file.size()) {
     Words words;
-    forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
+    for (std::string_view line; file.nextLine(line);) {
       split(line, " \t\r", words);
       if (!words.empty() && lowerCase(words[0]) == "vertex") {
-        add(requireThreeNumbers(path, number, words, 1));
+        add(requireThreeNumbers(file, words));
       }
-    });
+    }
   } else {
-    requireBytes(path, static_cast<double>(size), file_size);
-    BlockReader reader(path, header_size, progress);
+    requireBytes(file, static_cast<double>(size));
+    file.skip(header_size);
     for (std::uint32_t t = 0; t < triangles; ++t) {
-      const char* const record = reader.take(record_size);
+      const char* const record = file.take(record_size);
       if (record == nullptr) {
-        failContent(path, "it is shorter than its header says");
+        failContent(file.path(), "it is shorter than its header says");
       }
       std::array<float, 12> numbers{};
       std::memcpy(numbers.data(), record, sizeof numbers);
@@ -65,7 +62,8 @@ PointData readStl(const std::string& path, const std::vector<std::string>& /*col
     }
   }
   if (corners == 0 || corners % 3 != 0) {
-    failContent(path, corners == 0 ? "it has no points" : "its last triangle is not complete");
+    failContent(file.path(),
+                corners == 0 ? "it has no points" : "its last triangle is not complete");
   }
   return data;
 }

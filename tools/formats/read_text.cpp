@@ -25,8 +25,8 @@ struct TextStyle {
   bool has_decimal_commas = false;
 };
 
-/// A line without a comment, which '#' begins, or "//" or '%' before a word; one that is all
-/// comment, or frames the points, is empty.
+/// The line without its comment, which begins with '#', or with "//" or '%' before a word. Empty
+/// for a comment alone, and for BEGIN and END around the points.
 std::string_view withoutComment(std::string_view line) {
   line = trimmed(withoutRemark(line));
   constexpr std::size_t longest = 5;
@@ -112,25 +112,23 @@ std::vector<std::string> namesOf(std::string_view line) {
 
 /// The first lines of a file.
 struct Beginning {
-  std::string content;
   Words lines;     ///< those with data, or a heading
   Words comments;  ///< before the first of them
 };
 
-Beginning readFirstLines(const std::string& path) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 16;
+Beginning firstLines(InputFile& file) {
+  constexpr std::size_t max_bytes = std::size_t{1} << 16;
   Beginning beginning;
-  beginning.content = readBeginning(path, most_bytes);
-  std::string_view rest = withoutByteOrderMark(beginning.content);
+  std::string_view rest = withoutByteOrderMark(file.peek(max_bytes));
   if (rest.find('\n') == std::string_view::npos && rest.find('\r') < rest.size() - 1) {
-    failReading(path, "its lines do not end in LF",
+    failReading(file.path(), "its lines do not end in LF",
                 "convert it: tr '\\r' '\\n' < in.txt > out.txt");
   }
   if (rest.find('\0') != std::string_view::npos) {
-    failReading(path, "it is no text, or text in UTF-16",
+    failReading(file.path(), "it is no text, or text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
   }
-  const bool is_whole = beginning.content.size() < most_bytes;
+  const bool is_whole = file.size() < max_bytes;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos && !is_whole && !beginning.lines.empty()) {
@@ -159,8 +157,8 @@ bool isCount(std::string_view line) {
   return toInteger(line).has_value();
 }
 
-/// What follows the letter of a point, "p x y z"; empty for a line of another letter that such
-/// files have; a line without such a letter as it is.
+/// The text behind the letter of a point, "p x y z"; nothing of lines that begin with d, g or s,
+/// which such files have beside them. Other lines stay as they are.
 std::string_view behindLetter(std::string_view line) {
   const bool has_letter = line.size() > 1 && (line[1] == ' ' || line[1] == '\t') &&
                           std::string_view("dgps").find(line[0]) != std::string_view::npos;
@@ -170,8 +168,8 @@ std::string_view behindLetter(std::string_view line) {
 /// Whether the first line has counts, that of the points first, and the others are numbered from 0
 /// or 1 on, as in the .node files of TetGen.
 bool areNumbered(const Words& lines) {
-  constexpr std::size_t least = 3;
-  bool are_numbered = lines.size() >= least;
+  constexpr std::size_t min_lines = 3;
+  bool are_numbered = lines.size() >= min_lines;
   std::int64_t start = 0;
   for (std::size_t i = 0; i < lines.size() && are_numbered; ++i) {
     // Commas are decimal where others separate.
@@ -186,19 +184,19 @@ bool areNumbered(const Words& lines) {
 }
 
 /// \throw Failure if columns are of latitude and longitude instead of x, y and z.
-void requireLengths(const std::string& path, const std::vector<std::string>& names) {
+void requireLengths(const InputFile& file, const std::vector<std::string>& names) {
   const auto is_degree = [](const std::string& name) {
     static const std::set<std::string> degrees = {"latitude", "longitude", "lat",
                                                   "lon",      "lng",       "long"};
     return degrees.count(commonName(name)) > 0;
   };
   if (std::count_if(names.begin(), names.end(), is_degree) >= 2 && !areCoordinatesNamed(names)) {
-    failReading(path, "its latitude and longitude are degrees, which are not lengths",
+    failReading(file.path(), "its latitude and longitude are degrees, which are not lengths",
                 "project them first, e.g. gdaltransform -s_srs EPSG:4326 -t_srs EPSG:32632");
   }
 }
 
-/// Takes the last name off if it is that of a list: rows may be of any length then.
+/// Removes the last name if it is that of a list, which rows may end with. \return whether it was
 bool takeList(std::vector<std::string>& names) {
   const bool is_list = names.size() > 3 && (names.back().find("[]") != std::string::npos ||
                                             names.back().find("...") != std::string::npos);
@@ -207,7 +205,7 @@ bool takeList(std::vector<std::string>& names) {
 }
 
 /// How lines of data are separated. \param names of the columns, if they are known.
-TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names) {
+TextStyle styleOf(const InputFile& file, const Words& lines, std::size_t names) {
   const auto all = [&](const auto& is_so) {
     return std::all_of(lines.begin(), lines.end(), is_so);
   };
@@ -244,7 +242,7 @@ TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names
   };
   const bool are_all_pairs = all(are_pairs);
   if (are_all_pairs && names == 0) {
-    failReading(path, "its commas separate columns, or they are decimal",
+    failReading(file.path(), "its commas separate columns, or they are decimal",
                 "if they are decimal, give -columns x,y,z; else -columns x,y,z,-,-,-");
   }
   return {',', are_all_pairs};
@@ -262,8 +260,8 @@ struct TextLayout {
   bool has_lists = false;          ///< rows go on behind the columns
 };
 
-TextLayout layoutOf(const std::string& path, const std::vector<std::string>& given) {
-  const Beginning beginning = readFirstLines(path);
+TextLayout layoutOf(InputFile& file, const std::vector<std::string>& given) {
+  const Beginning beginning = firstLines(file);
   TextLayout layout;
   layout.names = given;
   layout.are_given = !given.empty();
@@ -280,7 +278,8 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     const Words counts = split(lines.front(), " \t\r,;");
     layout.numbered = toInteger(counts.front()).value_or(0);
     if (!layout.are_given && counts.size() > 1 && counts[1] == "2") {
-      failReading(path, "its points have two dimensions, as its first line says", name_columns);
+      failReading(file.path(), "its points have two dimensions, as its first line says",
+                  name_columns);
     }
     lines.erase(lines.begin());
   }
@@ -293,16 +292,16 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     }
     lines.erase(lines.begin());
   }
-  requireLengths(path, layout.names);
+  requireLengths(file, layout.names);
   if (layout.has_heading && !areCoordinatesNamed(layout.names)) {
-    failReading(path, "line 1 neither begins with three numbers nor names x, y and z",
+    failReading(file.path(), "line 1 neither begins with three numbers nor names x, y and z",
                 name_columns);
   }
   if (lines.empty()) {
-    failContent(path, "it has no points");
+    failContent(file.path(), "it has no points");
   }
   if (isCount(lines.front())) {
-    failReading(path, "it begins with two numbers of points, as PTX files do",
+    failReading(file.path(), "it begins with two numbers of points, as PTX files do",
                 "convert it to PLY with CloudCompare");
   }
   for (auto comment = beginning.comments.rbegin();
@@ -313,9 +312,9 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
       continue;
     }
     Words cells;
-    splitCells(lines.front(), styleOf(path, lines, names.size()), names.size(), cells);
+    splitCells(lines.front(), styleOf(file, lines, names.size()), names.size(), cells);
     if (names.size() == cells.size() || (has_lists && names.size() < cells.size())) {
-      requireLengths(path, names);
+      requireLengths(file, names);
       // "North, east, elevation" may be prose.
       const bool has_x = std::any_of(names.begin(), names.end(),
                                      [](const auto& name) { return commonName(name) == "x"; });
@@ -325,8 +324,8 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
       }
     }
   }
-  layout.style = styleOf(path, lines, layout.names.size());
-  const std::string extension = extensionOf(path);
+  layout.style = styleOf(file, lines, layout.names.size());
+  const std::string extension = extensionOf(file.path());
   Words cells;
   splitCells(lines.front(), layout.style, 0, cells);
   if (layout.names.empty() && cells.size() == 6 && extension == ".xyzn") {
@@ -340,73 +339,58 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
   return layout;
 }
 
-/// The columns of lines of text.
-class TextColumns {
-public:
-  TextColumns(const std::string& path, const TextLayout& layout) : path_(path), layout_(layout) {}
+/// \throw Failure for what is wrong with the last line that was taken.
+[[noreturn]] void failRow(const InputFile& file, const std::string& reason) {
+  failReading(file.path(), "line " + std::to_string(file.lineNumber()) + " has " + reason,
+              "correct it, or " + std::string(name_columns));
+}
 
-  std::vector<PointColumn>& columns() { return columns_; }
-
-  /// \param number of the line.
-  void add(std::size_t number, std::string_view line) {
-    splitCells(line, layout_.style, columns_.empty() ? layout_.names.size() : columns_.size(),
-               cells_);
-    if (columns_.empty()) {
-      begin();
-    }
-    const std::size_t count = columns_.size();
-    if (cells_.size() < count ||
-        (cells_.size() > count && !layout_.are_given && !layout_.has_lists)) {
-      fail(number, counted(cells_.size(), "column") + " instead of " + std::to_string(count));
-    }
-    for (std::size_t c = 0; c < count; ++c) {
-      if (is_left_out_[c]) {
-        continue;
-      }
-      const std::optional<double> value =
-          cells_[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells_[c]);
-      if (!value) {
-        fail(number,
-             "no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells_[c]));
-      }
-      columns_[c].values.push_back(*value);
-    }
+/// The columns of a file without their values. Those that are left out have the name "-".
+///
+/// \param cells of the first row.
+std::vector<PointColumn> columnsOf(const std::string& path, const TextLayout& layout,
+                                   const Words& cells) {
+  const std::vector<std::string>& names = layout.names;
+  std::vector<PointColumn> columns(names.empty() ? std::max<std::size_t>(cells.size(), 3)
+                                                 : names.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    columns[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
   }
-
-private:
-  [[noreturn]] void fail(std::size_t line, const std::string& reason) const {
-    failReading(path_, "line " + std::to_string(line) + " has " + reason,
-                "correct it, or " + std::string(name_columns));
+  const std::vector<PointColumn*> coordinates = findColumns(columns, {"x", "y", "z"});
+  for (std::size_t d = 0; d < coordinates.size(); ++d) {
+    coordinates[d]->name = "xyz"[d];
   }
-
-  void begin() {
-    const std::vector<std::string>& names = layout_.names;
-    columns_.resize(names.empty() ? std::max<std::size_t>(cells_.size(), 3) : names.size());
-    const std::size_t lines = countLines(path_, "");
-    is_left_out_.resize(columns_.size(), false);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      columns_[c].name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
+  const std::size_t lines = countLines(path, "");
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const bool is_word = c < cells.size() && !cells[c].empty() && !toValue(cells[c]);
+    if (is_word && std::count(coordinates.begin(), coordinates.end(), &columns[c]) == 0) {
+      columns[c].name = "-";
     }
-    const std::vector<PointColumn*> coordinates = findColumns(columns_, {"x", "y", "z"});
-    for (std::size_t d = 0; d < coordinates.size(); ++d) {
-      coordinates[d]->name = "xyz"[d];
-    }
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      PointColumn& column = columns_[c];
-      const bool is_word = c < cells_.size() && !cells_[c].empty() && !toValue(cells_[c]);
-      const bool is_coordinate =
-          std::find(coordinates.begin(), coordinates.end(), &column) != coordinates.end();
-      is_left_out_[c] = column.name == "-" || (is_word && !is_coordinate);
-      column.values.reserve(is_left_out_[c] ? 0 : lines);
-    }
+    columns[c].values.reserve(columns[c].name == "-" ? 0 : lines);
   }
+  return columns;
+}
 
-  const std::string& path_;
-  const TextLayout& layout_;
-  Words cells_;
-  std::vector<PointColumn> columns_;
-  std::vector<bool> is_left_out_;
-};
+/// Adds a row to the columns. \throw Failure if it has other cells.
+void addRow(const InputFile& file, const TextLayout& layout, const Words& cells,
+            std::vector<PointColumn>& columns) {
+  const bool may_go_on = layout.are_given || layout.has_lists;
+  if (cells.size() < columns.size() || (cells.size() > columns.size() && !may_go_on)) {
+    failRow(file,
+            counted(cells.size(), "column") + " instead of " + std::to_string(columns.size()));
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].name == "-") {
+      continue;
+    }
+    const std::optional<double> value =
+        cells[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells[c]);
+    if (!value) {
+      failRow(file, "no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells[c]));
+    }
+    columns[c].values.push_back(*value);
+  }
+}
 
 /// Names of three columns by what is in them: colours are whole numbers of 0 to 255 that are not
 /// all 0, normals have length 1, or are all 0. \return empty if they are neither
@@ -431,8 +415,8 @@ std::vector<std::string> namesOfThree(const std::vector<PointColumn>& columns, s
   return are_colors ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>();
 }
 
-/// Names the columns after x, y and z that nothing names: by threes, perhaps with an intensity
-/// before, between or behind them, wherever most threes are colours or normals.
+/// Names the columns behind x, y and z if nothing else does: groups of three are colours or
+/// normals. An intensity may stand before, between or behind them, where most groups make sense.
 void nameFurther(std::vector<PointColumn>& columns) {
   const std::size_t end = columns.size();
   std::map<std::size_t, std::string> best;
@@ -487,35 +471,38 @@ std::string describe(const std::vector<PointColumn>& columns, const TextLayout& 
 /// separate; decimal commas are seen. The first line may be the number of points; if it is, and the
 /// first column counts them, that is left out. Of lines that all begin with d, g, p or s, those
 /// with p are points.
-PointData readText(const std::string& path, const std::vector<std::string>& given,
-                   const FileProgress& progress) {
-  const TextLayout layout = layoutOf(path, given);
-  TextColumns table(path, layout);
+PointData readText(InputFile& file, const std::vector<std::string>& given) {
+  const TextLayout layout = layoutOf(file, given);
+  std::vector<PointColumn> columns;
+  Words cells;
   const bool is_numbered = layout.numbered > 0;
   auto announced = static_cast<double>(layout.numbered);
   double count = 0.0;
   bool is_first = layout.has_heading || is_numbered;  // a heading, or counts
-  forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
+  for (std::string_view line; file.nextLine(line);) {
     line = withoutComment(line);
     line = layout.has_letters ? behindLetter(line) : line;
     if (line.empty()) {
-      return;
+      continue;
     }
     if (layout.has_counts && isCount(line)) {
       announced += static_cast<double>(*toInteger(line));
     } else if (!std::exchange(is_first, false)) {
-      table.add(number, line);
+      splitCells(line, layout.style, columns.empty() ? layout.names.size() : columns.size(), cells);
+      if (columns.empty()) {
+        columns = columnsOf(file.path(), layout, cells);
+      }
+      addRow(file, layout, cells, columns);
       count += 1.0;
     }
-  });
-  if (count < announced || (is_numbered && count > announced)) {
-    failContent(path, std::string("it has ") + (count < announced ? "fewer" : "more") +
-                          " points than its first line says");
   }
-  std::vector<PointColumn> columns = std::move(table.columns());
+  if (count < announced || (is_numbered && count > announced)) {
+    failContent(file.path(), std::string("it has ") + (count < announced ? "fewer" : "more") +
+                                 " points than its first line says");
+  }
   if (layout.names.empty()) {
     if (columns.size() > 3 && isCounter(columns[0].values)) {
-      failReading(path, "its first column counts the lines, or it is x",
+      failReading(file.path(), "its first column counts the lines, or it is x",
                   "name its columns: -columns -,x,y,z or -columns x,y,z");
     }
     nameFurther(columns);

@@ -4,15 +4,56 @@
 #include "common/text.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// What the readers of formats whose lines are words share.
+/// What the readers of formats with words in lines share.
 namespace spherical_param::tools {
 
 using Words = std::vector<std::string_view>;
+
+/// No cloud has more points: indices have 32 bits.
+inline constexpr std::int64_t count_limit = std::int64_t{1} << 30;
+
+/// The words of the next line of a header. \return false at the end of the file
+inline bool nextWords(InputFile& file, Words& words) {
+  constexpr std::size_t longest_header = std::size_t{1} << 20;
+  std::string_view line;
+  if (file.size() - file.bytesLeft() > longest_header || !file.nextLine(line)) {
+    return false;
+  }
+  split(line, " \t\r,", words);
+  return true;
+}
+
+/// A number in a header. \throw Failure if it is not a number, or more than points may be.
+inline std::int64_t requireCount(const InputFile& file, std::string_view word,
+                                 const std::string& what) {
+  const std::optional<std::int64_t> count = toInteger(word);
+  if (!count || *count < 0 || *count > count_limit) {
+    failContent(file.path(), "its number of " + what + " is " + inQuotes(word));
+  }
+  return *count;
+}
+
+/// To be called before anything is read: memory is reserved for as many points as a header claims.
+///
+/// \param needed products of counts overflow any integer in a broken header.
+/// \throw Failure if fewer bytes are left than a header needs.
+inline void requireBytes(const InputFile& file, double needed) {
+  if (needed > static_cast<double>(file.bytesLeft())) {
+    failContent(file.path(), "it is shorter than its header says");
+  }
+}
+
+/// \throw Failure for what is wrong with the last line that was taken.
+[[noreturn]] inline void failLine(const InputFile& file, const std::string& reason) {
+  failContent(file.path(), "line " + std::to_string(file.lineNumber()) + " " + reason);
+}
 
 /// A line without the comment after '#', which is no part of a word: 1.#QNAN is a number.
 inline std::string_view withoutRemark(std::string_view line) {
@@ -23,34 +64,23 @@ inline std::string_view withoutRemark(std::string_view line) {
   return line.substr(0, hash);
 }
 
-/// Hands each line to a function, with its number.
-template <typename Take>
-void forEachLine(const std::string& path, const FileProgress& progress, const Take& take) {
-  BlockReader reader(path, 0, progress);
-  std::string_view line;
-  for (std::size_t number = 1; reader.nextLine(line); ++number) {
-    take(number, number == 1 ? withoutByteOrderMark(line) : line);
-  }
-}
-
-/// The number of lines that begin with some text: so much memory is set aside for points, instead
-/// of twice or three times as much while it grows.
+/// The number of lines that begin with some text. To set that much memory aside for points takes
+/// less than to let it grow.
 inline std::size_t countLines(const std::string& path, std::string_view beginning) {
+  InputFile file(path);
   std::size_t count = 0;
-  forEachLine(path, {}, [&](std::size_t /*number*/, std::string_view line) {
+  for (std::string_view line; file.nextLine(line);) {
     count += line.substr(0, beginning.size()) == beginning ? 1 : 0;
-  });
+  }
   return count;
 }
 
 /// The three numbers from a word on, if there are any.
 inline std::optional<std::array<double, 3>> threeNumbers(const Words& words, std::size_t first) {
-  if (words.size() < first + 3) {
-    return std::nullopt;
-  }
   std::array<double, 3> values{};
   for (std::size_t d = 0; d < 3; ++d) {
-    const std::optional<double> value = toValue(words[first + d]);
+    const std::optional<double> value =
+        first + d < words.size() ? toValue(words[first + d]) : std::nullopt;
     if (!value) {
       return std::nullopt;
     }
@@ -59,12 +89,11 @@ inline std::optional<std::array<double, 3>> threeNumbers(const Words& words, std
   return values;
 }
 
-/// The same of a line that must have them. \throw Failure
-inline std::array<double, 3> requireThreeNumbers(const std::string& path, std::size_t line,
-                                                 const Words& words, std::size_t first) {
-  const auto values = threeNumbers(words, first);
+/// The three numbers after the first word of a line, which must be there. \throw Failure
+inline std::array<double, 3> requireThreeNumbers(const InputFile& file, const Words& words) {
+  const auto values = threeNumbers(words, 1);
   if (!values) {
-    failContent(path, "line " + std::to_string(line) + " has no three numbers");
+    failLine(file, "has no three numbers");
   }
   return *values;
 }

@@ -33,7 +33,7 @@ int runPeer(int argc, char** argv, const std::string& library,
     std::cout << '\n'
               << nlohmann::ordered_json{{"library", library},
                                         {"parameters", result.parameters},
-                                        {"peak_memory_bytes", tools::peakMemory().value_or(0)}};
+                                        {"peak_memory_bytes", tools::peakMemoryToJson()}};
   } catch (const std::exception& error) {
     std::cerr << library << ": " << error.what() << '\n';
     return 1;

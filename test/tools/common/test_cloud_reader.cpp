@@ -126,8 +126,9 @@ std::string bytesOf(const void* value, std::size_t size, bool big_endian) {
   return bytes;
 }
 
-/// A PLY file with elements before and after its points.
+/// A PLY file with elements before and after its points, of which the faces use all but the last.
 std::string plyOf(const Cloud& cloud, const std::string& format) {
+  const auto faces = static_cast<std::int32_t>(cloud.size()) - 3;
   const bool text = format == "ascii";
   const bool big_endian = format == "binary_big_endian";
   std::string file =
@@ -136,9 +137,9 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
       "element vertex " +
       std::to_string(cloud.size()) +
       "\nproperty float x\nproperty list uchar short views\nproperty uchar quality\nproperty float "
-      "y\nproperty int64 time\nproperty float z\nelement face 50000\nproperty list uchar int "
-      "vertex_indices\n"
-      "property uchar flag\nend_header\n";
+      "y\nproperty int64 time\nproperty float z\nelement face " +
+      std::to_string(faces) +
+      "\nproperty list uchar int vertex_indices\nproperty uchar flag\nend_header\n";
   const auto add = [&](auto value) {
     std::ostringstream number;
     number.precision(9);
@@ -155,7 +156,7 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
     add_line(0.5, Byte{3}, Small{0}, Small{1}, Small{2});
   for (const pcl::PointXYZRGBNormal& point : cloud)
     add_line(point.x, Byte{1}, Small{-3}, Byte{7}, point.y, std::int64_t{-12345678901}, point.z);
-  for (std::int32_t t = 0; t < 50000; ++t)
+  for (std::int32_t t = 0; t < faces; ++t)
     add_line(Byte{3}, t, t + 1, t + 2, Byte{1});
   return file;
 }
@@ -191,11 +192,9 @@ TEST_F(CloudReader, CoordinatesAreOfAnyNumericType) {
 TEST_F(CloudReader, PointsInNoFaceAreNotedUnlessTheFacesMakeNoSense) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
-    const std::string file = plyOf(makeCloud(50005), format);  // the faces have 50,002 points
-    EXPECT_EQ(read("a.ply", file).unused, (std::vector<Index>{50002, 50003, 50004}));
+    const std::string file = plyOf(makeCloud(50), format);
+    EXPECT_EQ(read("a.ply", file).unused, (std::vector<Index>{49}));
     EXPECT_TRUE(read("a.ply", file.substr(0, file.size() - 20)).unused.empty());
-    // Faces have points that are not there.
-    EXPECT_TRUE(read("a.ply", plyOf(makeCloud(1000), format)).unused.empty());
   }
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
   const std::string face = "element face 1\nproperty list uchar int vertex_index\n";
@@ -214,7 +213,6 @@ TEST_F(CloudReader, TheViewpointOfPcdIsTheOriginOnlyWithRowsOrIfItIsApart) {
   };
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 1 2 -3 1 0 0 0\n", 1.0),
             (Point{1.0, 2.0, -3.0}));
-  EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n", 1.0), std::nullopt);
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n", -0.5), Point{});
   EXPECT_EQ(viewpoint_of("WIDTH 1\nHEIGHT 2\nVIEWPOINT 0 0 0 1 0 0 0\n", 1.0), Point{});
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\n", 1.0), std::nullopt);
@@ -239,34 +237,26 @@ std::string xyzPcd(const std::string& points, const std::string& data) {
   return pcdOf("x y z", "4 4 4", "F F F", points, data);
 }
 
-TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
-  const Cloud& cloud = largeCloud();
-  ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
-  ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("b.pcd"), cloud), 0);
-  const std::string pcd = readFile(directory.file("a.pcd"));
-  const std::string packed = readFile(directory.file("b.pcd"));
-  const std::string text = textOf(cloud, "");
-  const std::string obj = textOf(cloud, "v ");
-  const std::string in_line = "line " + std::to_string(point_count);
-  const std::string header = xyzPcd(std::to_string(point_count), "ascii\n");
-  const std::string shorter = "shorter than its header says";
-  // Of the text files the last number or line is cut off.
-  for (const auto& [name, content, kept, cause] :
-       std::vector<std::tuple<std::string, std::string, std::size_t, std::string>>{
-           {"a.ply", plyOf(cloud, "binary_little_endian"), 300000, shorter},
-           {"a.ply", plyOf(cloud, "binary_big_endian"), 300000, shorter},
-           {"a.ply", plyOf(cloud, "ascii"), 300000, shorter},
-           {"a.pcd", pcd, pcd.size() - 1, shorter},
-           {"a.pcd", packed, packed.size() - 1, shorter},
-           {"a.pcd", header + text, header.size() + text.rfind('\n', text.size() - 2) + 1,
-            "fewer points than its header says"},
-           {"a.pcd", header + text, header.size() + text.rfind(' '),
-            "line " + std::to_string(point_count + 8) + " has no number for 'z'"},
-           {"a.xyz", text, text.rfind(' '), in_line + " has 2 columns"},
-           {"a.obj", obj, obj.rfind(' '), in_line + " has no three numbers"}}) {
-    ASSERT_GT(content.size(), std::size_t{1} << 20U);
-    expectRefused(name, content.substr(0, kept), cause);
+TEST_F(CloudReader, FilesThatAreCutAreRefused) {
+  const Cloud cloud = makeCloud(500);
+  const char* const shorter = "shorter than its header says";
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
+    expectRefused("a.ply", plyOf(cloud, format).substr(0, 5000), shorter);
+  ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("b.pcd"), cloud), 0);
+  ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("c.pcd"), cloud), 0);
+  for (const char* name : {"b.pcd", "c.pcd"}) {
+    const std::string pcd = readFile(directory.file(name));
+    expectRefused("a.pcd", pcd.substr(0, pcd.size() - 1), shorter);
   }
+  const std::string header = xyzPcd("500", "ascii\n");
+  const std::string text = textOf(cloud, "");
+  const std::string without_line = text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+  const std::string without_number = text.substr(0, text.rfind(' '));
+  const std::string obj = textOf(cloud, "v ");
+  expectRefused("a.pcd", header + without_line, "fewer points than its header says");
+  expectRefused("a.pcd", header + without_number, "line 508 has no number for 'z'");
+  expectRefused("a.xyz", without_number, "line 500 has 2 columns");
+  expectRefused("a.obj", obj.substr(0, obj.rfind(' ')), "line 500 has no three numbers");
 }
 
 TEST_F(CloudReader, ProgressGrowsToOne) {
@@ -276,12 +266,12 @@ TEST_F(CloudReader, ProgressGrowsToOne) {
   ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("packed.pcd"), cloud), 0);
   writeFile(directory.file("a.xyz"), textOf(cloud, ""));
   for (const char* name : {"a.ply", "a.pcd", "packed.pcd", "a.xyz"}) {
-    std::vector<double> shares;
-    readCloud(directory.file(name), [&](double share) { shares.push_back(share); });
-    ASSERT_GE(shares.size(), 2U) << name;
-    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << name;
-    EXPECT_LT(shares.front(), 0.9) << name;
-    EXPECT_EQ(shares.back(), 1.0) << name;
+    std::vector<double> fractions;
+    readCloud(directory.file(name), [&](double fraction) { fractions.push_back(fraction); });
+    ASSERT_GE(fractions.size(), 2U) << name;
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << name;
+    EXPECT_LT(fractions.front(), 0.9) << name;
+    EXPECT_EQ(fractions.back(), 1.0) << name;
   }
 }
 
