@@ -91,9 +91,6 @@ struct EmbeddingOptions {
   /// Mean length of the tangential Laplacian at which the embedding counts as converged [radius of
   /// the sphere]; [0, 1]. Unset: 1e-8 for Method::Paper; Method::Default then ends with its sweeps.
   std::optional<double> tolerance;
-  /// Number of starts of Method::Default on the coarsest level; the start of least energy is kept;
-  /// [1, 100].
-  int starts = 2;
   /// Maximum number of nodes whose paths are recorded to show how the embedding unfolds; 0: none;
   /// [0, 2^24]. Costs the memory of the states and, with Method::Default, the time of a start.
   Index history_vertices = 0;
@@ -170,8 +167,6 @@ struct Options : Execution {
   SurfaceMode surface = SurfaceMode::AsTopology;
   /// Openings of up to this number of edges are filled in any case; >= 0.
   int fill_holes = 0;
-  /// Openings of up to this area are filled in any case [squared unit of the input]; [0, 1e15].
-  double fill_holes_area = 0.0;
 
   /// How openings are filled, if they are. With vertices added, a surface has no `sphere`.
   FillMode fill = FillMode::Flat;

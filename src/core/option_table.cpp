@@ -230,8 +230,6 @@ std::vector<OptionRow> methodRows() {
       number("embedding.tolerance",
              "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert,
              0, 1, &Options::embedding, &EmbeddingOptions::tolerance),
-      byDefault(number("embedding.starts", "number of starts on the coarsest level", Expert, 1, 100,
-                       &Options::embedding, &EmbeddingOptions::starts)),
       number("embedding.history_vertices",
              "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
              &Options::embedding, &EmbeddingOptions::history_vertices),
@@ -252,8 +250,6 @@ std::vector<OptionRow> surfaceRows() {
           &Options::surface)),
       byDefault(number("fill_holes", "openings of up to this number of edges are filled", Expert, 0,
                        kMaxInt, &Options::fill_holes)),
-      byDefault(number("fill_holes_area", "openings of up to this area are filled", Expert, 0, 1e15,
-                       &Options::fill_holes_area)),
       byDefault(choice<FillMode>(
           "fill",
           "smooth: vertices are added in filled openings, which go on as the surface around does",

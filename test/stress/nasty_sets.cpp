@@ -306,7 +306,6 @@ Options someOptions(Random& random, bool is_large) {
   options.paper.k = 3 + one(30);
   options.paper.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
   options.smoothing = one(3) == 0 ? one(30) : 0;
-  options.embedding.starts = 1 + one(3);
   options.seed = static_cast<std::uint32_t>(one(1000000));
   options.details = one(4) == 0;
   options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(4)) : OutlierMode::None;

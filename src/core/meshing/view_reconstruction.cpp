@@ -326,8 +326,7 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   // Of a depth image of 242,749 points 3,071 openings become 197, and its surfaces stay apart.
   constexpr std::size_t small_gap = 8;
   const GapLimits limits{options.surface == SurfaceMode::Open ? 0 : small_gap,
-                         static_cast<std::size_t>(options.fill_holes),
-                         std::ldexp(options.fill_holes_area, -2 * nodes.exponent)};
+                         static_cast<std::size_t>(options.fill_holes)};
   const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, mesh);
   std::vector<ViewPiece> pieces = PieceMaker(nodes, spacing, view->mesh, mesh, options)
                                       .run(points, info.normals, inputs, filled, left_out);

@@ -152,7 +152,7 @@ std::optional<Finding> filledOf(const Surface& result, const Options& given) {
   const std::string of = " of " + counted(points, "point") + ", filled";
   const std::string kind = certain > 0 ? "opening" : "possible opening";
   const std::string text = count == 1 ? kind + of : counted(count, kind) + ", the largest" + of;
-  const bool is_fault = certain > 0 && given.fill_holes == 0 && given.fill_holes_area == 0.0;
+  const bool is_fault = certain > 0 && given.fill_holes == 0;
   Finding finding = certain > 0 && !is_open
                         ? shown(text, given, "surface", "open", is_fault)
                         : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};

@@ -107,14 +107,8 @@ TEST(ViewReconstruction, OptionsKeepTheirMeaning) {
   EXPECT_THROW(run(given("parts", "each", "min_points", 3000)), InvalidInput);
   EXPECT_EQ(run(given("time_limit", 0.0)).surfaces.size(), 2U);
   const std::size_t hole = largest.surface().boundary[1].size();
-  const auto filled = [&](const char* option, double value) {
-    Options options;
-    setOption(options, option, option[10] == '\0' ? OptionValue(std::int64_t(value)) : value);
-    options.details = true;
-    return run(options).surfaces.front();
-  };
   // The wall stays open where the box is.
-  EXPECT_EQ(filled("fill_holes", static_cast<double>(hole)).boundary.size(), 2U);
+  EXPECT_EQ(run(given("fill_holes", hole)).surface().boundary.size(), 2U);
   for (const char* option : {"smoothing", "consolidation", "outliers", "intersections"}) {
     const std::map<std::string, OptionValue> values = {{"smoothing", std::int64_t{5}},
                                                        {"consolidation", std::string("auto")},
