@@ -38,12 +38,12 @@ enum class PartsMode {
   Each,        ///< each part as a mesh of its own
 };
 
-/// Where a cloud is seen from. One that a place sees as one layer needs no embedding: the sphere
-/// around that place is one. Its mesh ends where the depth jumps.
+/// Where a cloud is seen from. If a place sees it as one layer, the directions from there are the
+/// embedding, and the mesh ends where the depth jumps.
 enum class ViewMode {
-  /// The viewpoint of the cloud, the origin, far above a low sheet, or a place that is searched
-  /// for, whichever is the first that sees one layer; none otherwise. None for
-  /// TopologyMode::Sphere.
+  /// The first of these that sees one layer: the viewpoint of the cloud, the origin, far above a
+  /// low
+  /// sheet, a place that is searched for. If none does, and for TopologyMode::Sphere, None.
   Auto,
   None,   ///< no place
   Up,     ///< far above, along z
@@ -139,8 +139,8 @@ enum class IntersectionMode {
 struct Options : Execution {
   Method method = Method::Default;  ///< how the cloud is meshed
   PaperOptions paper;               ///< of Method::Paper
-  /// The topology of the mesh, of which `outliers`, `parts`, `surface`, `handles` and
-  /// `intersections` override a part each.
+  /// The topology of the mesh. `outliers`, `parts`, `surface`, `handles` and `intersections` each
+  /// override a part of it.
   TopologyMode topology = TopologyMode::Scan;
   /// Where the cloud is seen from. With TopologyMode::Sphere or SurfaceMode::Closed the directions
   /// from there are the embedding.

@@ -402,13 +402,13 @@ Options withTopology(Options options) {
   };
   if (!is_scan && (options.view == ViewMode::Auto || options.method == Method::Paper))
     options.view = ViewMode::None;
-  // Of a scan, noise decides.
+  // For a scan it stays AsTopology: the noise of each part decides.
   if ((!is_scan || options.smoothing > 0) && options.consolidation == ConsolidationMode::AsTopology)
     options.consolidation = ConsolidationMode::None;
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);
   resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);
-  // What a place sees has no handles.
+  // A surface that is seen from one place has no handles.
   const bool is_seen = options.view == ViewMode::Up || options.view == ViewMode::Place;
   resolve(options.handles, is_seen ? HandleMode::None : HandleMode::Auto, HandleMode::None);
   resolve(options.intersections, IntersectionMode::Auto, IntersectionMode::Keep);
