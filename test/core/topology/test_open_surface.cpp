@@ -140,10 +140,10 @@ TEST(OpenSurface, HolesAreFilledUpToASize) {
   const Surface open = surfaceOf(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];
-  const auto filled = [&](std::size_t edges) {
+  const auto filled = [&](int edges) {
     return surfaceOf(points, given(leftOpen(), "fill_holes", edges));
   };
-  test::expectSound(filled(second.loop.size()), 0, 1);
+  test::expectSound(filled(static_cast<int>(second.loop.size())), 0, 1);
   test::expectSound(filled(1000), 0, 0);
 }
 
