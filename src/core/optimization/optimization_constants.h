@@ -38,7 +38,7 @@ constexpr double kMinGain = 1e-9;
 constexpr double kMinSmoothCosine = 0.8;
 constexpr double kMinUnfoldedCosine = -0.5;
 /// Neighbours in the graph up to this distance [mean length of a vertex's edges] should be near on
-/// the mesh. With 1 or 2.5, noisy clouds keep several times as many self-intersections.
+/// the mesh. With 1 or 2.5, noisy clouds keep more self-intersections.
 constexpr double kMaxNearNeighbor = 1.5;
 /// Maximum number of rounds of relocation, and of closing open triangles without a loop, of which
 /// untangling may leave more. With 2, some models keep self-intersections.
@@ -46,7 +46,7 @@ constexpr int kMaxRounds = 4;
 
 // --- Ruin and recreate ---------------------------------------------------------------------------
 
-/// Maximum number of rounds of unfolding. With 2, models and noisy clouds keep self-intersections.
+/// Maximum number of rounds of unfolding. With fewer, some models and noisy clouds stay tangled.
 constexpr int kMaxUnfoldingRounds = 5;
 /// Vertices of a part around a folded edge: this number, doubled up to 8 times as many. Larger
 /// first parts, or smaller last ones, leave self-intersections.
