@@ -80,10 +80,10 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     const std::vector<Index>& over = filled.openings.at(0).triangles;
     EXPECT_EQ(marked(filled, triangle_mark::filled_hole),
               std::set<Index>(over.begin(), over.end()));
-    EXPECT_EQ(
-        marked(surfaceOf(sphereWithHoles(3000, 1, 0.15), watched()), triangle_mark::filled_hole),
-        std::set<Index>());  // it is not certain
   }
+  const Surface uncertain = surfaceOf(sphereWithHoles(3000, 1, 0.15), watched());
+  EXPECT_TRUE(uncertain.openings.at(0).is_filled);
+  EXPECT_TRUE(marked(uncertain, triangle_mark::filled_hole).empty());
   EXPECT_TRUE(marked(mesh(ellipsoid(300), watched()), 0xff).empty());
 }
 
