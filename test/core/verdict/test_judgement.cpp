@@ -76,7 +76,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
   EXPECT_EQ(marked(tangled, triangle_mark::self_intersection), intersecting);
   for (const char* fill : {"flat", "smooth"}) {
     const Surface filled =
-        mesh(sphereWithHoles(1500, 1, 0.4), watched(given("surface", "closed", "fill", fill)));
+        mesh(sphereWithHoles(3000, 1, 0.4), watched(given("surface", "closed", "fill", fill)));
     const std::vector<Index>& over = filled.openings.at(0).triangles;
     EXPECT_EQ(marked(filled, triangle_mark::filled_hole),
               std::set<Index>(over.begin(), over.end()));
