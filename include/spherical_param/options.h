@@ -38,12 +38,12 @@ enum class PartsMode {
   Each,        ///< each part as a mesh of its own
 };
 
-/// Where a cloud is seen from. One that a place sees as one layer needs no embedding: the sphere
-/// around that place is one. Its mesh ends where the depth jumps.
+/// Where a cloud is seen from. If a place sees it as one layer, the directions from there are the
+/// embedding, and the mesh ends where the depth jumps.
 enum class ViewMode {
-  /// The viewpoint of the cloud, the origin, far above a low sheet, or a place that is searched
-  /// for, whichever is the first that sees one layer; none otherwise. None for
-  /// TopologyMode::Sphere.
+  /// The first of these that sees one layer: the viewpoint of the cloud, the origin, far above a
+  /// low
+  /// sheet, a place that is searched for. If none does, and for TopologyMode::Sphere, None.
   Auto,
   None,   ///< no place
   Up,     ///< far above, along z
@@ -91,9 +91,6 @@ struct EmbeddingOptions {
   /// Mean length of the tangential Laplacian at which the embedding counts as converged [radius of
   /// the sphere]; [0, 1]. Unset: 1e-8 for Method::Paper; Method::Default then ends with its sweeps.
   std::optional<double> tolerance;
-  /// Number of starts of Method::Default on the coarsest level; the start of least energy is kept;
-  /// [1, 100].
-  int starts = 2;
   /// Maximum number of nodes whose paths are recorded to show how the embedding unfolds; 0: none;
   /// [0, 2^24]. Costs the memory of the states and, with Method::Default, the time of a start.
   Index history_vertices = 0;
@@ -142,8 +139,8 @@ enum class IntersectionMode {
 struct Options : Execution {
   Method method = Method::Default;  ///< how the cloud is meshed
   PaperOptions paper;               ///< of Method::Paper
-  /// The topology of the mesh, of which `outliers`, `parts`, `surface`, `handles` and
-  /// `intersections` override a part each.
+  /// The topology of the mesh. `outliers`, `parts`, `surface`, `handles` and `intersections` each
+  /// override a part of it.
   TopologyMode topology = TopologyMode::Scan;
   /// Where the cloud is seen from. With TopologyMode::Sphere or SurfaceMode::Closed the directions
   /// from there are the embedding.
@@ -170,8 +167,6 @@ struct Options : Execution {
   SurfaceMode surface = SurfaceMode::AsTopology;
   /// Openings of up to this number of edges are filled in any case; >= 0.
   int fill_holes = 0;
-  /// Openings of up to this area are filled in any case [squared unit of the input]; [0, 1e15].
-  double fill_holes_area = 0.0;
 
   /// How openings are filled, if they are. With vertices added, a surface has no `sphere`.
   FillMode fill = FillMode::Flat;

@@ -34,10 +34,9 @@ std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen:
 /// triangulation there -> optimisation on the points -> verdict.
 ///
 /// \param points 3 x n, at least 4 of them finite, distinct and not all in one plane; coordinates
-/// up
-///               to 1e100. Points that are not finite are left out. The topology is always sound;
-///               differences below 1e-90 of the extent make self-intersections inexact, and the
-///               geometry is arbitrary far sooner: see doc/reference.md.
+///               up to 1e100. Points that are not finite are left out. The topology is always
+///               sound; differences below 1e-90 of the extent make self-intersections inexact, and
+///               the geometry is arbitrary far sooner: see doc/reference.md.
 /// \param options the defaults need no tuning.
 /// \param search_of makes the neighbour search; empty: a k-d tree in double precision. It is called
 ///               at most once, with the first point at each position. It and its search run in the

@@ -61,10 +61,10 @@ struct Opening {
   double width = 0.0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
   /// Certainty in [0, 1]: 0 at the minimum width of 3 spacings, 1 from 9 spacings on, or
-  /// for the rim of a low sheet.
+  /// for the boundary of a low sheet.
   double certainty = 0.0;
-  /// The loop lies in a plane and is no rim of a sheet: it may surround a flat face of the surface
-  /// without points inside.
+  /// The loop lies in a plane and is not the boundary of a sheet: it may surround a flat face of
+  /// the surface without points inside.
   bool is_flat = false;
   /// The longest opening, and all of the surface is on one side of it, like an object without
   /// points on its base.

@@ -152,10 +152,11 @@ constexpr ResultField visitFields(const Finding*, const Visit& visit) {
 template <typename Visit>
 constexpr ResultField visitFields(const Opening*, const Visit& visit) {
   visit({"is_filled", "the mesh has triangles over it"}, &Opening::is_filled);
-  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9, or 1 for the rim of a low sheet"},
+  visit({"certainty",
+         "from 0 at 3 spacings of width to 1 at 9, or 1 for the boundary of a low sheet"},
         &Opening::certainty);
   visit({"is_certain", "certainty is 1 and it is not flat"}, &Opening::isCertain);
-  visit({"is_flat", "the loop lies in a plane, and is no rim of a sheet: perhaps a flat face"},
+  visit({"is_flat", "the loop lies in a plane and does not bound a sheet: perhaps a flat face"},
         &Opening::is_flat);
   visit({"is_base", "the longest opening, with all of the surface on one side of it"},
         &Opening::is_base);

@@ -230,8 +230,6 @@ std::vector<OptionRow> methodRows() {
       number("embedding.tolerance",
              "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert,
              0, 1, &Options::embedding, &EmbeddingOptions::tolerance),
-      byDefault(number("embedding.starts", "number of starts on the coarsest level", Expert, 1, 100,
-                       &Options::embedding, &EmbeddingOptions::starts)),
       number("embedding.history_vertices",
              "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
              &Options::embedding, &EmbeddingOptions::history_vertices),
@@ -252,8 +250,6 @@ std::vector<OptionRow> surfaceRows() {
           &Options::surface)),
       byDefault(number("fill_holes", "openings of up to this number of edges are filled", Expert, 0,
                        kMaxInt, &Options::fill_holes)),
-      byDefault(number("fill_holes_area", "openings of up to this area are filled", Expert, 0, 1e15,
-                       &Options::fill_holes_area)),
       byDefault(choice<FillMode>(
           "fill",
           "smooth: vertices are added in filled openings, which go on as the surface around does",
@@ -406,13 +402,13 @@ Options withTopology(Options options) {
   };
   if (!is_scan && (options.view == ViewMode::Auto || options.method == Method::Paper))
     options.view = ViewMode::None;
-  // Of a scan, noise decides.
+  // For a scan it stays AsTopology: the noise of each part decides.
   if ((!is_scan || options.smoothing > 0) && options.consolidation == ConsolidationMode::AsTopology)
     options.consolidation = ConsolidationMode::None;
   resolve(options.outliers, OutlierMode::Auto, OutlierMode::None);
   resolve(options.parts, PartsMode::Each, PartsMode::All);
   resolve(options.surface, SurfaceMode::Auto, SurfaceMode::Closed);
-  // What a place sees has no handles.
+  // A surface that is seen from one place has no handles.
   const bool is_seen = options.view == ViewMode::Up || options.view == ViewMode::Place;
   resolve(options.handles, is_seen ? HandleMode::None : HandleMode::Auto, HandleMode::None);
   resolve(options.intersections, IntersectionMode::Auto, IntersectionMode::Keep);

@@ -38,8 +38,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Whether the mesh is a manifold with the boundary and the handles that are listed. Openings may
-/// divide it, and may take a handle.
+/// Whether the mesh is a manifold with the boundary that is listed. Openings may divide it.
 bool isAsPromised(const Surface& surface) {
   const MeshTopology& topology = surface.topology;
   return surface.isClosed()
@@ -69,7 +68,7 @@ NeighborGraph takeGraph(Neighborhoods& neighborhoods, const Options& options,
   if (options.method == Method::Paper)
     return paper::nearestNeighborGraph(neighborhoods.points(), neighborhoods.neighbors().lists,
                                        options.paper.k);
-  // Outliers that are left out are not looked for again.
+  // Else they were found, and left out, before.
   std::vector<StrayPoint> stray;
   if (options.outliers == OutlierMode::None)
     stray = strayPoints(neighborhoods.points(), neighborhoods.agreed(), neighborhoods.stars());
@@ -113,30 +112,30 @@ Surface meshGraph(const Positions& points, const NeighborGraph& graph, SurfacePl
                       ? meshAsPublished(points, graph.graph, options, clock)
                       : meshByAttempts(points, graph.graph, std::move(plan), options, clock);
   clock.keep(0.0);
-  FinishedMesh finished;
-  finished.faced_by = orient(points, info, mesh.mesh, mesh.embedding);
+  Surface surface;
+  surface.faced_by = orient(points, info, mesh.mesh, mesh.embedding);
   const Triangles triangles = mesh.mesh.surfaceTriangles();
-  finished.points = mesh.isSmoothed() ? mesh.smoothed : points;
-  finished.triangles = triangles;
-  finished.input_of_vertex.resize(columnCount(points));
-  std::iota(finished.input_of_vertex.begin(), finished.input_of_vertex.end(), Index{0});
-  finished.is_out_of_time = mesh.optimization.is_out_of_time;
-  finished.intersecting = std::move(mesh.intersecting);
-  finished.openings = mesh.openings.found(points, graph.graph, triangles);
+  surface.points = mesh.isSmoothed() ? mesh.smoothed : points;
+  surface.triangles = triangles;
+  surface.input_of_vertex.resize(columnCount(points));
+  std::iota(surface.input_of_vertex.begin(), surface.input_of_vertex.end(), Index{0});
+  surface.is_out_of_time = mesh.optimization.is_out_of_time;
+  surface.self_intersections = std::move(mesh.intersecting.pairs);
+  surface.intersections_are_sampled = mesh.intersecting.is_sample;
+  surface.openings = mesh.openings.found(points, graph.graph, triangles);
   if (mesh.has_certain_triangles_only)
-    for (Opening& opening : finished.openings)
+    for (Opening& opening : surface.openings)
       opening.is_filled = !opening.triangles.empty();
   if (options.fill == FillMode::Smooth) {
     clock.begin("fill");
-    fillSmoothly(clock.limited(), finished);
+    fillSmoothly(clock.limited(), surface);
   }
   clock.begin("quality");
-  Surface surface = judge(points, graph, std::move(mesh), triangles, std::move(finished), options,
-                          clock.execution());
+  judge(points, graph, std::move(mesh), triangles, options, clock.execution(), surface);
   return surface;
 }
 
-/// \see coarseSteps; none of an elevation grid.
+/// coarseSteps(), which do not matter in an elevation grid.
 Eigen::Vector3d coarseStepsOffGrid(const Positions& points, double min_spacings) {
   const Eigen::Vector3d steps = coarseSteps(points, min_spacings);
   return steps.isZero(0.0) || isElevationGrid(points) ? Eigen::Vector3d(0.0, 0.0, 0.0) : steps;
@@ -148,7 +147,7 @@ bool areRows(const Positions& points) {
   return !coarseStepsOffGrid(points, min_spacings).isZero(0.0);
 }
 
-/// Says what a part is that is no plain surface, and what is done with it.
+/// Remarks on a part that is no plain surface: what it is, and what becomes of it.
 void remarkOn(PointSpread spread, bool are_rows, bool is_on_lines, const Options& options,
               StageClock& clock) {
   const char* const what = spread == PointSpread::Volume   ? "a volume, without a surface"
@@ -188,7 +187,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     if (round < max_rounds &&
         selection.complete(part, nodes, plan.openings().embeddedOpenings().openings))
       continue;
-    // Where there is no surface, nothing makes a good mesh: minutes would be lost.
+    // Without a surface no attempt makes a good mesh, and some take minutes.
     const PointSpread spread = spreadOf(nodes.points);
     const bool are_rows = areRows(nodes.points);
     const bool is_on_lines = areOnLines(nodes.points, graph.graph);
@@ -248,7 +247,7 @@ Surface meshConsolidated(Selection& all, std::size_t part, const Options& option
   return surface;
 }
 
-/// Whether a part is a surface with noise that a mesh through its points does not bear.
+/// Whether a part is a surface with too much noise for a mesh through its points.
 bool isNoisySurface(Selection& selection, std::size_t part, StageClock& clock) {
   const Neighborhoods& cloud = selection.neighborhoodsOf(part);
   clock.begin("consolidation");
@@ -258,11 +257,11 @@ bool isNoisySurface(Selection& selection, std::size_t part, StageClock& clock) {
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options, StageClock& clock,
                  LeftOut& left_out) {
-  const bool is_consolidated = options.consolidation == ConsolidationMode::Auto ||
-                               (options.consolidation == ConsolidationMode::AsTopology &&
-                                isNoisySurface(selection, part, clock));
-  if (is_consolidated && options.consolidation == ConsolidationMode::AsTopology)
+  const bool is_noisy = options.consolidation == ConsolidationMode::AsTopology &&
+                        isNoisySurface(selection, part, clock);
+  if (is_noisy)
     clock.remark("noisy; points move to the surface that they sample, and merge");
+  const bool is_consolidated = is_noisy || options.consolidation == ConsolidationMode::Auto;
   auto* const mesh = is_consolidated ? meshConsolidated : meshAsIs;
   Surface surface = mesh(selection, part, options, clock);
   if (!isAsPromised(surface))
@@ -301,8 +300,8 @@ void leaveOutUnusable(Result& result, std::vector<Index>& failed) {
   failed.insert(failed.end(), dropped.begin(), dropped.end());
 }
 
-/// Meshes all parts, each with its share of the time. One of several that cannot be meshed is left
-/// out.
+/// Meshes all parts, each within its fraction of the time. Leaves out the parts that cannot be
+/// meshed, unless it is all of them.
 void meshParts(Selection& selection, const Options& options, StageClock& clock, Result& result) {
   const std::vector<std::vector<Index>>& parts = selection.parts();
   if (parts.empty())
@@ -348,7 +347,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   std::sort(result.left_out.unmeshed.begin(), result.left_out.unmeshed.end());
 }
 
-/// Says what was left out in the message of a failure: it may be the cause.
+/// Adds to the message of a failure what was left out, which may be the cause.
 template <typename Work>
 auto explained(const LeftOut& left_out, const Work& work) {
   try {

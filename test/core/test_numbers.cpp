@@ -65,7 +65,7 @@ TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
   }
 }
 
-TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
+TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndFaultsAreReported) {
   for (const double radius : {1e-5, 1e-20}) {
     const Surface result = meshOf(sphereWithDisc(radius, 100), quick(sphere()));
     EXPECT_EQ(result.duplicates(), 0U) << radius;
@@ -104,7 +104,7 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
   EXPECT_GT(shortest, 1e-16);
 }
 
-TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
+TEST(Numbers, ATubeThatIsTooLongForTheSphereIsReported) {
   const Mesh tube = bentTube(130.0, 0.0, 8);
   EXPECT_FALSE(meshOf(tube.points, quick(sphere())).findings.empty());
   // The faces of the graph need no sphere.

@@ -125,7 +125,7 @@ TEST(OptionTable, OutliersAreNamesOrTheNumberOfDeviations) {
   EXPECT_EQ(options.outliers, OutlierMode::Auto);
 }
 
-TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
+TEST(OptionTable, EnumerationsAreChecked) {
   const auto refuses = [](const std::string& name, const auto& change) {
     Options options;
     change(options);

@@ -23,7 +23,6 @@ Options optionsFrom(Bytes& bytes) {
   vary(paper.damping, &Bytes::real);
   vary(paper.max_iterations, &Bytes::integer);
   vary(embedding.tolerance, &Bytes::real);
-  vary(embedding.starts, &Bytes::integer);
   vary(options.seed, &Bytes::raw<std::uint32_t>);
   vary(options.smoothing, &Bytes::integer);
   vary(embedding.history_vertices, &Bytes::integer);
@@ -165,8 +164,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Positions points = pointsFrom(bytes);
 
   // Valid, but too long to wait for.
-  if (options.paper.max_iterations > 3000 || options.embedding.starts > 20 ||
-      options.smoothing > 300)
+  if (options.paper.max_iterations > 3000 || options.smoothing > 300)
     watch.cancelAt(2000);
   const std::array<std::string, 13> stages{
       "neighbors", "graph",     "outliers",      "parts",        "consolidation",

@@ -76,8 +76,8 @@ TEST(RosParameters, EachChangesWhatItNamesOnly) {
 
 TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
   Settings settings;
-  setParameter(settings, "fill_holes_area", 4);
-  EXPECT_EQ(settings.options.fill_holes_area, 4.0);
+  setParameter(settings, "damping", 1);
+  EXPECT_EQ(settings.options.paper.damping, 1.0);
   for (const Value& number : {Value(4), Value(4.0), Value(std::string("4"))}) {
     setParameter(settings, "outliers", number);
     EXPECT_EQ(settings.options.outliers, spherical_param::OutlierMode::Deviation);
@@ -99,7 +99,7 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
   const Values wrong = {{"method", std::string("ball")},
                         {"method", 1},
                         {"k", 12.0},
-                        {"fill_holes_area", -2.0},
+                        {"damping", -2.0},
                         {"damping", true},
                         {"outliers", 1000.5},
                         {"outliers", -0.5},

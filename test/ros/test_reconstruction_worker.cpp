@@ -243,15 +243,15 @@ TEST(ConcurrencyReconstructionWorker, SettingsHoldFromTheNextCloudOn) {
       {}, [](const pcl::PCLPointCloud2&, const Settings& settings, const std::function<bool()>&) {
         Outcome outcome;
         outcome.status = Status::Done;
-        outcome.message = std::to_string(settings.options.embedding.starts);
+        outcome.message = std::to_string(settings.options.smoothing);
         return outcome;
       });
   Settings settings;
-  settings.options.embedding.starts = 7;
-  EXPECT_EQ(worker.process(cloudNumber(0)).message, "2");
+  settings.options.smoothing = 7;
+  EXPECT_EQ(worker.process(cloudNumber(0)).message, "0");
   worker.setSettings(settings);
   EXPECT_EQ(worker.process(cloudNumber(0)).message, "7");
-  EXPECT_EQ(worker.settings().options.embedding.starts, 7);
+  EXPECT_EQ(worker.settings().options.smoothing, 7);
 }
 
 // All together, with the real reconstruction: a stream from two threads, requests from two more.

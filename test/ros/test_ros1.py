@@ -268,12 +268,12 @@ class Ros1(unittest.TestCase):
         self.assertGreater(np.linalg.det(drawn.reshape(-1, 3, 3)).sum(), 0.0)
 
     def test_parameters_change_while_it_runs(self):
-        self.run_node("_smoothing:=3", "_fill_holes_area:=4")
+        self.run_node("_smoothing:=3", "_time_limit:=60")
         reconstruct, points = self.service(), bumpy(500, 6)
         cloud = message_of(points)
         client = dynamic_reconfigure.client.Client("/spherical_param", timeout=TIMEOUT)
         self.addCleanup(client.close)
-        self.assertLessEqual({"smoothing": 3, "fill_holes_area": 4.0}.items(), client.get_configuration(TIMEOUT).items())
+        self.assertLessEqual({"smoothing": 3, "time_limit": 60.0}.items(), client.get_configuration(TIMEOUT).items())
         self.assertNotEqual(reconstruct(cloud).mesh.cloud.data, cloud.data)
         client.update_configuration({"smoothing": 0})
         self.assertEqual(rospy.get_param("/spherical_param/smoothing"), 0)

@@ -132,7 +132,7 @@ class ReconstructionTool(ToolTest):
                 self.check_types(report[key], value, f"{path}/{key}")
 
     def test_report_has_all_keys_with_their_types(self):
-        report = reported("in.ply", "out.ply", "-starts=4", "-sphere", "sphere.ply")
+        report = reported("in.ply", "out.ply", "-sphere", "sphere.ply")
         self.check_types(report, TYPES)
         # Smoothing steps do not end at a solution.
         self.check_entries(report, {"points": 200, "triangles": 396, "closed": True, "manifold": True,
@@ -148,20 +148,20 @@ class ReconstructionTool(ToolTest):
         self.check_entries(iteration, {"iterations": 3, "stop_reason": "iteration_limit", "levels": []})
         # A residual before each step and at the end.
         self.assertEqual([len(iteration["residuals"]), iteration["residuals"][-1]], [4, iteration["residual"]])
-        self.check_entries(paper["options"], {"max_iterations": 3, "weights": "inverse", "k": 25, "starts": None,
+        self.check_entries(paper["options"], {"max_iterations": 3, "weights": "inverse", "k": 25,
                                               "tolerance": None, "surface": None})  # fmt: skip
-        standard = reported("in.ply", "out.ply", "-starts", 5, "-sphere", "sphere.ply")
-        self.check_entries(standard["options"], {"starts": 5, "max_iterations": None, "k": None})
+        standard = reported("in.ply", "out.ply", "-seed", 5, "-sphere", "sphere.ply")
+        self.check_entries(standard["options"], {"seed": 5, "max_iterations": None, "k": None})
         self.assertLess(standard["embedding"]["levels"][0]["edges"], 200 * 4)
 
     def test_options_are_taken_in_every_notation_and_order(self):
         os.rename("in.ply", "-in.ply")
-        for line in ("-starts +7 -offset -1,2,3 -quiet -- -in.ply out.ply",
-                     "--quiet --starts 7 --offset -1,2,3 -- -in.ply out.ply",
-                     "-offset=-1,2,3 ./-in.ply -starts=7 -quiet out.ply",
-                     "./-in.ply --starts=7 out.ply --quiet --offset=-1,+2.,3"):  # fmt: skip
+        for line in ("-seed +7 -offset -1,2,3 -quiet -- -in.ply out.ply",
+                     "--quiet --seed 7 --offset -1,2,3 -- -in.ply out.ply",
+                     "-offset=-1,2,3 ./-in.ply -seed=7 -quiet out.ply",
+                     "./-in.ply --seed=7 out.ply --quiet --offset=-1,+2.,3"):  # fmt: skip
             self.assertEqual(run("reconstruction", "-json", "r.json", *line.split()), "")
-            self.check_entries(read_json("r.json")["options"], {"starts": 7, "offset": [-1, 2, 3]})
+            self.check_entries(read_json("r.json")["options"], {"seed": 7, "offset": [-1, 2, 3]})
         report = reported("./-in.ply", "out.ply", "-offset", "+.25,-1e-3,-1e-999")
         self.assertEqual(report["options"]["offset"], [0.25, -1e-3, 0])
 

@@ -4,14 +4,13 @@
 #include "local_intersections.h"
 #include "power_of_two.h"
 #include "sphere_mesh.h"
+#include "surface_energy.h"
 #include "union_find.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -21,12 +20,12 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Taking out a vertex frees its some six triangles and those that they intersect.
-constexpr int kMostOfVertex = 12;
+/// By how many pairs the number of intersections may grow when a vertex is taken out.
+constexpr int kMaxPairsOfVertex = 12;
 
-/// Exact tests of pairs of triangles, some 1.5 us each. Where triangles may be left out, less time
-/// is spent.
-std::size_t mostTests(const SphereMesh& mesh, std::size_t intersecting) {
+/// Maximum number of exact tests of pairs of triangles, which take some 1.5 us each: fewer in an
+/// open mesh, whose triangles may be left out.
+std::size_t maxTests(const SphereMesh& mesh, std::size_t intersecting) {
   const std::size_t of_closed =
       std::min<std::size_t>(2000000, 100 * mesh.slotCount()) + 500 * intersecting;
   return mesh.hasOpen() ? of_closed / 5 : of_closed;
@@ -40,7 +39,7 @@ class Remover {
 public:
   Remover(const Positions& points, const SphereMesh& mesh, std::vector<Index> intersecting)
       : points_(points), mesh_(mesh), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())),
-        due_(std::move(intersecting)), most_tests_(mostTests(mesh, due_.size())) {
+        due_(std::move(intersecting)), max_tests_(maxTests(mesh, due_.size())) {
     Indexed<Face> faces;
     for (const Index t : mesh_.surface())
       faces.push_back(face(t));
@@ -55,10 +54,10 @@ public:
 
   /// \see clearIntersections
   Removal run(const Removal& most, SphereMesh& result) {
-    // Small moves are cheap, and leave few places for large ones. If not, it is a tangle.
-    constexpr std::size_t most_places = 100;
+    // Small moves are cheap, and leave few triangles for large ones, unless it is a tangle.
+    constexpr std::size_t max_due = 100;
     for (const std::size_t largest : {8U, 32U, 128U})
-      if (largest == 8 || due_.size() <= most_places)
+      if (largest == 8 || due_.size() <= max_due)
         clear([&](Index t) { return moveNear(t, largest); });
     result = mesh_;
     const bool is_closed = !mesh_.hasOpen();
@@ -66,7 +65,7 @@ public:
       const bool may_take = removal_.vertices < most.vertices;
       const bool may_leave = removal_.triangles < most.triangles;
       return (is_closed && may_take && takeOutNear(t, -1)) || (may_leave && leaveOut(t)) ||
-             (may_take && takeOutNear(t, kMostOfVertex));
+             (may_take && takeOutNear(t, kMaxPairsOfVertex));
     });
     if (!due_.empty())
       return {};
@@ -150,7 +149,7 @@ private:
   /// whether that leaves fewer intersections.
   bool moveNear(Index t, std::size_t largest) {
     for (std::size_t count = std::max<std::size_t>(2, largest / 8); count <= largest; count *= 2)
-      for (int attempt = 0; attempt < 4 && exact_tests_ < most_tests_; ++attempt) {
+      for (int attempt = 0; attempt < 4 && exact_tests_ < max_tests_; ++attempt) {
         begin();
         if (moveAtRandom(verticesNear(t, count)) < 0) {
           commit();
@@ -182,27 +181,27 @@ private:
   /// Flips sides of triangles that have changed, so that the surface bends less and no more
   /// triangles intersect. Returns by how many pairs their number grows.
   int flipSmooth() {
-    constexpr std::size_t most_changes = 6000;
+    constexpr std::size_t max_changes = 6000;
     int change = 0;
-    for (std::size_t i = 0; i < changed_.size() && i < most_changes; ++i)
+    for (std::size_t i = 0; i < changed_.size() && i < max_changes; ++i)
       for (int k = 0; k < 3; ++k)
         if (const Index t = changed_[i]; surface_.contains(t))
           change += flipIfSmoother(t, k);
     return change;
   }
 
-  /// Flips a side if that bends the surface less, by the lengths of the edges times the angles
-  /// there, and the new triangles intersect nothing. Returns by how many pairs their number grows.
+  /// Flips a side if that bends the surface less, by SurfaceEnergy::Bend::Angle, and the new
+  /// triangles intersect nothing. Returns by how many pairs their number grows.
   int flipIfSmoother(Index t, int corner) {
     const Index o = mesh_.neighbor(t, corner);
     const auto at = mesh_.diamond(t, corner);
     if (isOpen(o) || !isFree(mesh_, at))
       return 0;
-    const auto normal = [&](Index a, Index b, Index c) -> Eigen::Vector3d {
-      const Eigen::Vector3d p = points_.col(a);
-      return Eigen::Vector3d(points_.col(b) - p)
-          .cross(Eigen::Vector3d(points_.col(c) - p))
-          .normalized();
+    const auto facet = [&](Index v, Index w, Index x) {
+      return RawFacet(points_.col(v), points_.col(w), points_.col(x)).facet();
+    };
+    const auto bend = [&](Index v, Index w, const Facet& f, const Facet& g) {
+      return SurfaceEnergy().edge(v, w, points_.col(v), points_.col(w), f, g);
     };
     const auto [a, b, c, d] = at;
     const int l = mesh_.oppositeCorner(t, corner);
@@ -211,20 +210,17 @@ private:
     const std::array<Index, 4> beyond{
         mesh_.neighbor(t, (corner + 2) % 3), mesh_.neighbor(t, (corner + 1) % 3),
         mesh_.neighbor(o, (l + 1) % 3), mesh_.neighbor(o, (l + 2) % 3)};
-    const Eigen::Vector3d cab = normal(c, a, b);
-    const Eigen::Vector3d dba = normal(d, b, a);
-    const Eigen::Vector3d cad = normal(c, a, d);
-    const Eigen::Vector3d cdb = normal(c, d, b);
-    const auto bend = [&](Index v, Index w, const Eigen::Vector3d& n, const Eigen::Vector3d& m) {
-      return length(v, w) * std::acos(std::clamp(n.dot(m), -1.0, 1.0));
-    };
+    const Facet cab = facet(c, a, b);
+    const Facet dba = facet(d, b, a);
+    const Facet cad = facet(c, a, d);
+    const Facet cdb = facet(c, d, b);
     double before = bend(a, b, cab, dba);
     double after = bend(c, d, cad, cdb);
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& [x, y, z] = mesh_.vertices(beyond[i]);
-      const Eigen::Vector3d n = normal(x, y, z);
-      before += bend(sides[i][0], sides[i][1], n, i < 2 ? cab : dba);
-      after += bend(sides[i][0], sides[i][1], n, i % 2 == 0 ? cad : cdb);
+      const Facet other = facet(x, y, z);
+      before += bend(sides[i][0], sides[i][1], other, i < 2 ? cab : dba);
+      after += bend(sides[i][0], sides[i][1], other, i % 2 == 0 ? cad : cdb);
     }
     constexpr double sure = 1.0 - 1e-6;
     if (!(after < sure * before))
@@ -427,11 +423,11 @@ private:
 
   const Positions& points_;
   SphereMesh mesh_;
-  double scale_;                         ///< brings the coordinates to at most 1
-  LocalIntersections surface_;           ///< its triangles
-  std::vector<Index> changed_;           ///< since begin()
-  std::vector<Index> due_;               ///< triangles that may intersect
-  std::size_t most_tests_;               ///< 1.5 us each
+  double scale_;                ///< brings the coordinates to at most 1
+  LocalIntersections surface_;  ///< its triangles
+  std::vector<Index> changed_;  ///< since begin()
+  std::vector<Index> due_;      ///< triangles that may intersect
+  std::size_t max_tests_;
   mutable std::size_t exact_tests_ = 0;  ///< so far
   std::uint64_t random_ = 1;
   Removal removal_;

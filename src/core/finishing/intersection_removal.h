@@ -18,14 +18,14 @@ struct Removal {
   std::size_t triangles = 0;  ///< without those around the vertices
 };
 
-/// Takes apart the few triangles of a mesh that still intersect. For each of them, the first of
-/// these that leaves fewer:
+/// Takes apart the few triangles of a mesh that still intersect. Does for each of them the first of
+/// these that leaves fewer intersections:
 ///
-/// 1. two to 128 vertices near it are taken out, by flips and 3-to-1 merges, which keep the
-///    topology, and put back one by one where they intersect least (ruin and recreate);
-/// 2. if the mesh is closed, one of its vertices, or of a triangle that it intersects, is left out;
-/// 3. it is left out, or one that it intersects, if the others stay a manifold;
-/// 4. a vertex is left out even if as many intersections are left.
+/// 1. takes out two to 128 vertices near it, by flips and 3-to-1 merges, which keep the topology,
+///    and puts them back one by one where they intersect least (ruin and recreate);
+/// 2. if the mesh is closed, leaves out a vertex of it or of a triangle that it intersects;
+/// 3. leaves out this triangle or one that it intersects, if the others stay a manifold;
+/// 4. leaves out a vertex even if there are a few more intersections then.
 ///
 /// \param points 3 x n.
 /// \param pairs  all that intersect, of the triangles of `mesh`.

@@ -11,12 +11,12 @@ namespace {
 
 /// Whether triangles may be left out of a mesh however few of them intersect.
 bool mayOpen(const Options& options, const PartMesh& mesh) {
-  return removesIntersections(options) && options.surface != SurfaceMode::Closed &&
+  return mayLeaveOutTriangles(options) &&
          (mesh.openings.isOpen() || options.intersections == IntersectionMode::Remove);
 }
 
-/// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
-/// them. Returns how many intersect.
+/// Leaves out the triangles that intersect, and what hangs on them, unless these are more than
+/// `most`. Returns how many intersect.
 std::optional<std::size_t> leaveOutUpTo(std::size_t most, std::size_t vertices,
                                         const IntersectingTriangles& pairs, SphereMesh& mesh) {
   SphereMesh rest = mesh;
@@ -33,14 +33,17 @@ bool removesIntersections(const Options& options) {
   return options.intersections != IntersectionMode::Keep && options.method == Method::Default;
 }
 
+bool mayLeaveOutTriangles(const Options& options) {
+  return removesIntersections(options) && options.surface != SurfaceMode::Closed;
+}
+
 bool mayLeaveOutTriangles(const Options& options, const PartMesh& mesh) {
-  return mayOpen(options, mesh) || (removesIntersections(options) &&
-                                    options.surface != SurfaceMode::Closed && !mesh.isUsable());
+  return mayOpen(options, mesh) || (mayLeaveOutTriangles(options) && !mesh.isUsable());
 }
 
 void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
                PartMesh& mesh) {
-  // More of a surface is no spot, but a tangle: more that intersects is not even worked on.
+  // Beyond these fractions of the surface, it is a tangle, which is left as it is.
   constexpr double max_vertices = 0.002;
   constexpr double max_vertices_of_closed = 0.001;
   constexpr double max_triangles = 0.01;
@@ -60,7 +63,7 @@ void cleanMesh(const Positions& points, const Options& options, const Execution&
     return found;
   };
   const std::size_t most = clears ? fractionOf(max_cleared, triangles) : 1;
-  // The optimisation has left those of a closed mesh on its points. One of two may stay.
+  // Those of a closed mesh on its points are known from the optimisation.
   IntersectingPairs& found = mesh.intersecting;
   if (mesh.openings.isOpen() || mesh.isSmoothed() || (clears && found.is_sample))
     found = find(most);

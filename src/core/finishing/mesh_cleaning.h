@@ -10,11 +10,14 @@ namespace spherical_param::internal {
 /// Whether triangles that intersect are taken apart.
 bool removesIntersections(const Options& options);
 
-/// Whether triangles of a mesh that intersect may be left out: of an open one, or of a tangle.
+/// Whether triangles that intersect may be left out of some meshes.
+bool mayLeaveOutTriangles(const Options& options);
+
+/// Whether triangles that intersect may be left out of this mesh: it is open, or a tangle.
 bool mayLeaveOutTriangles(const Options& options, const PartMesh& mesh);
 
-/// Removes the intersections of a mesh for good, if the options say so and time is left. The first
-/// of these that leaves none:
+/// Removes the intersections of a mesh if the options say so and time is left, by the first of
+/// these that leaves none:
 ///
 /// 1. clearIntersections(), of at most 0.2 % of the points and 1 % of the triangles;
 /// 2. leaveOutTangles(), of at most a tenth of the triangles.
@@ -26,8 +29,8 @@ bool mayLeaveOutTriangles(const Options& options, const PartMesh& mesh);
 void cleanMesh(const Positions& points, const Options& options, const Execution& execution,
                PartMesh& mesh);
 
-/// Makes the faces of a graph the mesh, without those that intersect, if a third of the points is
-/// in it. Returns whether it is.
+/// Makes a mesh of the faces of a graph, without those that intersect. Returns whether it has at
+/// least a third of the points.
 bool takeCertainFaces(const Positions& points, const SphereMesh& faces, const Execution& execution,
                       PartMesh& mesh);
 

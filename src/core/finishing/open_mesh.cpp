@@ -17,7 +17,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
+/// Where a vertex without triangles of the surface may get some: an edge of the boundary, or a
+/// triangle of the surface.
 struct Place {
   double distance;  ///< sum over its corners
   Index triangle;   ///< the open one at the edge, or that of the surface
@@ -76,7 +77,7 @@ public:
     while (!due.empty()) {
       const Index v = due.back();
       due.pop_back();
-      // What is closed may leave other vertices pinched, and this one, too.
+      // Several fans may be left at this vertex, and new ones at the vertices of the gap.
       if (fanCount(v) > 1)
         for (const Index w : release(v))
           due.push_back(w);
@@ -101,8 +102,8 @@ private:
   /// Number of fans of the surface at a vertex.
   std::size_t fanCount(Index v) const { return fansAt(mesh_, v, false).size(); }
 
-  /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
-  /// the surface: the nearest place where that intersects nothing, edges first.
+  /// Joins a vertex by one triangle to an edge of the boundary, or puts it into a triangle of the
+  /// surface: at the nearest place where that intersects nothing, edges first.
   void attach(Index v) {
     std::vector<Place> edges;
     for (Index t = 0; t < mesh_.size(); ++t)
@@ -187,8 +188,8 @@ private:
                              [&](Index t, Index u) { return perimeter(t) < perimeter(u); });
   }
 
-  /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
-  /// intersects nothing. Returns the vertices that this concerns.
+  /// Joins two fans at a vertex: closes the narrowest gap where that intersects nothing. Returns
+  /// the vertices of the gap.
   std::vector<Index> release(Index v) {
     std::vector<Fan> gaps = fansAt(mesh_, v, true);
     std::stable_sort(gaps.begin(), gaps.end(),
@@ -208,8 +209,8 @@ private:
     return mesh_.verticesOf(*gap);
   }
 
-  /// Number of triangles of the surface, but for `without`, that one that is not on it would
-  /// intersect; counting may stop beyond `most`.
+  /// Number of triangles of the surface, except `without`, that a new one would intersect; counting
+  /// may stop beyond `most`.
   int crossings(const std::array<Index, 3>& corners, Index without, int most) const {
     return surface_.count(face(-1, corners), without, most);
   }
@@ -229,8 +230,8 @@ private:
     return length(a, b) + length(b, c) + length(c, a);
   }
 
-  /// Flips the edges from a vertex into a run of it, as far as that goes; leaves the rest of the
-  /// run.
+  /// Flips edges of a vertex within a run of its triangles away, as far as possible. Leaves the
+  /// triangles that stay at the vertex in the run.
   void trim(Index v, Fan& run) {
     for (auto t = run.begin(); t + 1 < run.end();)
       // The edge to the next triangle is opposite to the corner after v.

@@ -9,9 +9,9 @@ namespace spherical_param {
 namespace internal {
 namespace {
 
-/// The mean over the area of a surface of what holds for a triangle, in [-1, 1].
+/// The mean of side(corners, normal) over the area of a surface, in [-1, 1].
 ///
-/// \param side of the corners, 3 x 1 indices, and the normal, of length 1.
+/// \param side takes the corners, 3 x 1 indices, and the normal, of length 1.
 template <typename Side>
 double meanOver(const Positions& points, const Triangles& surface, const Side& side) {
   double sum = 0.0;

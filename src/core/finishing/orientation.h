@@ -8,8 +8,8 @@
 
 namespace spherical_param::internal {
 
-/// The mean over the area of a surface of the side of its triangles that normals are on, in [-1,
-/// 1].
+/// How far normals and triangles have the same side: 1 on the whole area of the surface, -1:
+/// nowhere.
 ///
 /// \param normals of the points, of any length.
 double agreementWith(const Positions& normals, const Positions& points, const Triangles& surface);
@@ -21,9 +21,9 @@ void mirror(Embedding& embedding);
 /// of a closed mesh face outward.
 void orientOutward(const Positions& points, SphereMesh& mesh, Embedding& embedding);
 
-/// Turns sphere and triangles so that the surface faces as the normals do, if these agree on most
-/// of the area; else an open one the viewpoint that looks at it, up if it is low, or the viewpoint
-/// that hardly sees it; else outward.
+/// Turns sphere and triangles so that the surface faces the first of these that applies: the side
+/// of the normals, if they agree on most of the area; of an open surface the viewpoint that looks
+/// at it, up if it is low, or the viewpoint that hardly sees it; outward.
 ///
 /// \param points    3 x n.
 /// \param info      with normals of these points, and a viewpoint in their unit.

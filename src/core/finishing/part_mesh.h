@@ -24,7 +24,7 @@ struct PartMesh {
   IntersectingPairs intersecting;           ///< triangles of the surface
   std::size_t left_out_triangles = 0;       ///< because they intersect
   bool has_certain_triangles_only = false;  ///< see Surface
-  std::size_t cut_handles = 0;              ///< of the cloud for sure, that are not wanted
+  std::size_t cut_handles = 0;              ///< certain handles of the cloud that are not wanted
   std::size_t possible_handles = 0;         ///< of the faces of the graph alone
 
   bool isSmoothed() const { return smoothed.cols() > 0; }

@@ -32,7 +32,7 @@ Edge undirected(Index a, Index b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// How far a patch bends: the first that does not intersect more than before is taken.
+/// How a patch bends: in the first of these ways that does not add intersections.
 enum Bend { ThinPlate, Membrane, AsGiven };
 
 /// A disc of triangles over an opening. Its vertices have numbers of their own: `given` first, then
@@ -94,7 +94,7 @@ bool shouldFlip(const Places& x, Index a, Index b, Index c, Index d) {
 /// Flips edges towards a Delaunay mesh. \param taken edges of the mesh between given vertices; one
 /// that was flipped away stays taken, as the patch may return to it.
 void relax(FillPatch& patch, Edges& taken) {
-  constexpr int max_sweeps = 50;  // it ends before, but for edges that flip back and forth
+  constexpr int max_sweeps = 50;  // for edges that flip back and forth
   bool has_flipped = true;
   for (int sweep = 0; has_flipped && sweep < max_sweeps; ++sweep) {
     has_flipped = false;
@@ -187,8 +187,8 @@ Sparse laplacianOf(const FillPatch& patch, const Places& x, bool is_plate) {
   return laplacian;
 }
 
-/// Moves the added vertices to the least thin-plate energy, with the slope of the surface around,
-/// or to that of a membrane.
+/// Moves the added vertices to the least energy of a thin plate, with the slope of the surface
+/// around, or of a membrane.
 void fair(const FillPatch& patch, bool is_plate, Places& x) {
   const Index given = patch.given.count();
   const Index added = patch.added();
@@ -216,7 +216,7 @@ void fair(const FillPatch& patch, bool is_plate, Places& x) {
 /// Makes the patches of a mesh.
 class SmoothFiller {
 public:
-  SmoothFiller(FinishedMesh& mesh, int threads)
+  SmoothFiller(Surface& mesh, int threads)
       : mesh_(mesh), points_(mesh.points), triangles_(mesh.triangles),
         corners_(triangles_, columnCount(points_), threadCount(threads, columnCount(points_))),
         opening_of_(columnCount(triangles_), -1), spacing_(columnCount(points_), 0.0) {
@@ -256,13 +256,13 @@ public:
 
   /// Gives the mesh the patches, bent as far as they do not intersect more than the given ones.
   void fill(const Execution& execution) {
-    const auto& given = mesh_.intersecting.pairs;
+    const auto& given = mesh_.self_intersections;
     for (;;) {
       Indexed<Index> patch_of;
-      FinishedMesh filled = assembled(patch_of);
+      Surface filled = assembled(patch_of);
       if (filled.added_vertices == 0)
         return;
-      filled.intersecting.pairs = findSelfIntersections(filled.points, filled.triangles, execution);
+      filled.self_intersections = findSelfIntersections(filled.points, filled.triangles, execution);
       // For each patch, the pairs now without those before.
       Indexed<Index> more(patches_.size(), 0);
       const auto count = [&](const auto& pairs, Index by) {
@@ -271,7 +271,7 @@ public:
             if (patch_of[t] >= 0)
               more[patch_of[t]] += by;
       };
-      count(filled.intersecting.pairs, 1);
+      count(filled.self_intersections, 1);
       count(given, -1);
       bool has_changed = false;
       for (const Index i : indicesOf(more))
@@ -281,7 +281,7 @@ public:
         }
       const bool is_given = std::all_of(patches_.begin(), patches_.end(),
                                         [](const auto& patch) { return patch.bend == AsGiven; });
-      if (!has_changed && (is_given || filled.intersecting.pairs.size() <= given.size())) {
+      if (!has_changed && (is_given || filled.self_intersections.size() <= given.size())) {
         mesh_ = std::move(filled);
         return;
       }
@@ -365,9 +365,9 @@ private:
   }
 
   /// The mesh with the patches as they bend now. \param patch_of of each triangle; -1: none
-  FinishedMesh assembled(Indexed<Index>& patch_of) const {
+  Surface assembled(Indexed<Index>& patch_of) const {
     using Triangle = Eigen::Matrix<Index, 3, 1>;
-    FinishedMesh filled = mesh_;
+    Surface filled = mesh_;
     std::vector<Eigen::Vector3d> added;
     std::vector<Triangle> more;
     Index last = -1;  // opening with added vertices
@@ -416,7 +416,7 @@ private:
     return filled;
   }
 
-  FinishedMesh& mesh_;
+  Surface& mesh_;
   const Positions& points_;
   const Triangles& triangles_;
   CornerTable corners_;
@@ -428,10 +428,10 @@ private:
 
 }  // namespace
 
-void fillSmoothly(const Execution& execution, FinishedMesh& mesh) {
+void fillSmoothly(const Execution& execution, Surface& mesh) {
   const bool has_filled = std::any_of(mesh.openings.begin(), mesh.openings.end(),
                                       [](const auto& of) { return !of.triangles.empty(); });
-  if (!has_filled || mesh.intersecting.is_sample)
+  if (!has_filled || mesh.intersections_are_sampled)
     return;
   const TimeLeft left(execution.time_limit);
   Execution limited = execution;

@@ -28,11 +28,10 @@ namespace {
 constexpr double kMinGain = 0.05;
 /// Faces that close up have at most this fraction of triangles that are in no face of the graph.
 constexpr double kFewDefects = 0.001;
-/// Faces with more have handles where there are none: of 290 clouds, up to here one true handle and
-/// one false are in the faces alone, and up to .03 two and four.
+/// Of faces with more defects, most handles are false.
 constexpr double kSomeDefects = 0.02;
 
-/// A finished mesh and what it costs.
+/// A finished mesh, and the figures by which it is compared.
 struct Outcome {
   PartMesh part;
   std::size_t genus = 0;
@@ -99,8 +98,9 @@ private:
     return best_ && best_->part.intersecting.pairs.empty() && best_->left_out == 0;
   }
 
-  /// Of usable meshes, the closed one, then that whose handles save energy, or has none; of others
-  /// that with fewer intersections, more points, less energy.
+  /// Of usable meshes the closed one is better, then the one with more handles if these save
+  /// energy. Of others the one with fewer intersections is better, then with more points, then with
+  /// less energy.
   bool isBetter(Outcome& mesh, Outcome& than) {
     if (!removesIntersections(options_) && mesh.left_out != than.left_out)
       return mesh.left_out < than.left_out;
@@ -138,7 +138,7 @@ private:
     return filling / static_cast<double>(faces.slotCount());
   }
 
-  /// Whether the faces close up with hardly a defect, or have handles for sure.
+  /// Whether the faces close up with hardly a defect, or have certain handles.
   bool areFacesGood() {
     const bool is_sphere_alone = !removesIntersections(options_) && !mayHaveHandles();
     if (is_sphere_alone || !mayUseFaces() || plan_.openings().isOneSided())
@@ -146,11 +146,10 @@ private:
     return facesGenus() == 0 ? defects() <= kFewDefects : mayHaveHandles() && areHandlesSure();
   }
 
-  /// Whether the faces have handles for sure: they cost less energy than the faces without handles,
-  /// and close up, or have few defects and cost far less energy than the sphere.
+  /// Whether the handles of the faces are certain: with them the faces cost less energy than
+  /// without, and close up, or have few defects and cost far less energy than the sphere.
   bool areHandlesSure() {
-    // Where the faces close up, the true handles of 65 clouds have 1.05 and more, the false one of
-    // one cloud 0.998.
+    // Where the faces close up, true handles have at least 1.05, false ones 0.998.
     constexpr double min_of_cut = 1.02;
     constexpr double max_defects = 0.03;
     constexpr double min_of_sphere = 2.1;
@@ -249,7 +248,7 @@ private:
     return *sphere_;
   }
 
-  /// With virtual nodes in the openings.
+  /// The embedding of the graph with virtual nodes in the openings.
   Embedding embeddingOf() {
     clock_.begin("embedding");
     Embedding embedding;
@@ -293,7 +292,7 @@ private:
 
   // --- 4. Certain faces
 
-  /// Whether certain faces are the first mesh: the others are tangles, and slow.
+  /// Whether the certain faces are meshed first: other meshes would be tangles, and slow.
   bool isNoSurface() { return !plan_.samplesSurface() && keepsCertainOnly(options_); }
 
   bool mayLeaveOut() {
@@ -420,8 +419,7 @@ void finishMesh(const Positions& points, const Graph& graph, const Options& opti
 }
 
 bool keepsCertainOnly(const Options& options) {
-  return removesIntersections(options) && options.smoothing == 0 &&
-         options.surface != SurfaceMode::Closed;
+  return mayLeaveOutTriangles(options) && options.smoothing == 0;
 }
 
 PartMesh meshByAttempts(const Positions& points, const Graph& graph, SurfacePlan plan,

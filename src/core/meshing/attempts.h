@@ -17,11 +17,11 @@ namespace spherical_param::internal {
 void finishMesh(const Positions& points, const Graph& graph, const Options& options,
                 StageClock& clock, PartMesh& part, std::optional<bool> is_even = {});
 
-/// Whether only triangles that are certain are kept where the points sample no surface.
+/// Whether a mesh keeps only the triangles that are certain if the points sample no surface.
 bool keepsCertainOnly(const Options& options);
 
-/// Meshes a graph by Method::Default: tries one way after the other, the cheap ones first, until a
-/// mesh is accepted, or else takes the best one.
+/// Meshes a graph by Method::Default: tries one way after the other, the cheap ones first, as long
+/// as the next one may be better, and takes the best mesh.
 ///
 /// \param points nodes; \param graph of them.
 PartMesh meshByAttempts(const Positions& points, const Graph& graph, SurfacePlan plan,

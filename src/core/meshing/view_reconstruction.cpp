@@ -8,6 +8,7 @@
 #include "orientation.h"
 #include "power_of_two.h"
 #include "selection.h"
+#include "smooth_fill.h"
 #include "spherical_param/errors.h"
 #include "union_find.h"
 #include "view_search.h"
@@ -24,7 +25,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// The option that keeps a view from being meshed; none if there is none.
+/// The option that rules out a view; nullptr: none does.
 const char* obstacleOf(const Options& options) {
   return options.consolidation == ConsolidationMode::Auto  ? "consolidation"
          : options.smoothing > 0                           ? "smoothing"
@@ -40,7 +41,7 @@ std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& optio
                                 const CloudInfo& info, const Execution& execution,
                                 NeighborSearch& search) {
   if (!isGiven(options)) {
-    // Smaller clouds are meshed so fast that a look takes longer.
+    // The search would take longer than to mesh a smaller cloud.
     constexpr Eigen::Index min_points = 1000;
     if (nodes.points.cols() < min_points)
       return std::nullopt;
@@ -59,14 +60,14 @@ std::optional<FoundView> viewOf(const OrderedPoints& nodes, const Options& optio
   return view;
 }
 
-/// The points as an elevation grid counts them: without heights.
+/// The points without heights, which say nothing about the spacing of an elevation grid.
 Positions withoutHeights(const Positions& points) {
   Positions flat = points;
   flat.row(2).setZero();
   return flat;
 }
 
-/// A boundary loop as an opening, which it certainly is.
+/// The opening within a boundary loop, which is certain.
 Opening openingOf(const Positions& points, const Indexed<double>& spacing,
                   std::vector<Index> loop) {
   Opening opening = measured(points, spacing, std::move(loop));
@@ -75,7 +76,7 @@ Opening openingOf(const Positions& points, const Indexed<double>& spacing,
   return opening;
 }
 
-/// The piece that each node is in, the largest first; -1: none.
+/// The number of the piece that each node is in, 0 for the largest; -1: none.
 Indexed<Index> numberPieces(const Triangles& triangles, std::size_t nodes, const Options& options) {
   const bool is_one = options.parts == PartsMode::All;
   UnionFind sets = internal::piecesOf(triangles, nodes);
@@ -98,15 +99,7 @@ Indexed<Index> numberPieces(const Triangles& triangles, std::size_t nodes, const
   return piece_of;
 }
 
-/// A surface before it is judged, in the unit and the numbers of the input.
-struct ViewPiece {
-  std::vector<Index> inputs;
-  std::vector<Index> vertex_of_input;
-  FinishedMesh mesh;
-  Positions sphere;
-};
-
-/// Makes the surfaces of a mesh that is open at jumps.
+/// Makes the surfaces of a mesh that is open at jumps, in the unit and the numbers of the input.
 class PieceMaker {
 public:
   /// \param spacing of the nodes.
@@ -121,15 +114,15 @@ public:
   }
 
   /// \param inputs of the nodes, ascending.
-  std::vector<ViewPiece> run(const Positions& points, const Positions& normals,
-                             const std::vector<Index>& inputs, const std::vector<Gap>& filled,
-                             LeftOut& left_out) {
+  std::vector<Surface> run(const Positions& points, const Positions& normals,
+                           const std::vector<Index>& inputs, const std::vector<Gap>& filled,
+                           LeftOut& left_out) {
     sortPoints(inputs, left_out);
     makeTriangles();
     makeSphere();
     const std::vector<Indexed<double>> spacing = spacings();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      FinishedMesh& mesh = pieces_[i].mesh;
+      Surface& mesh = pieces_[i];
       mesh.points = points(Eigen::all, mesh.input_of_vertex);
       if (normals.cols() > 0)
         faceNormals(normals(Eigen::all, mesh.input_of_vertex), mesh);
@@ -144,9 +137,9 @@ public:
   }
 
 private:
-  ViewPiece& pieceAt(Index node) { return pieces_[static_cast<std::size_t>(piece_of_[node])]; }
+  Surface& pieceAt(Index node) { return pieces_[static_cast<std::size_t>(piece_of_[node])]; }
 
-  /// Gives each input point to its piece, or to those that are left out.
+  /// Adds each input point to its piece, or to the points that are left out.
   void sortPoints(const std::vector<Index>& inputs, LeftOut& left_out) {
     Indexed<std::uint8_t> has_triangle(piece_of_.size(), 0);
     const Triangles surface = mesh_.surfaceTriangles();
@@ -165,11 +158,11 @@ private:
         reason(node).push_back(input);
         continue;
       }
-      ViewPiece& of = pieceAt(node);
+      Surface& of = pieceAt(node);
       Index& vertex = vertex_of_node_[node];
       if (vertex < 0) {
-        vertex = static_cast<Index>(of.mesh.input_of_vertex.size());
-        of.mesh.input_of_vertex.push_back(input);
+        vertex = static_cast<Index>(of.input_of_vertex.size());
+        of.input_of_vertex.push_back(input);
       }
       of.inputs.push_back(input);
       of.vertex_of_input.push_back(vertex);
@@ -181,7 +174,7 @@ private:
   }
 
   /// Turns a surface as normals are on three quarters of its area.
-  static void faceNormals(const Positions& normals, FinishedMesh& mesh) {
+  static void faceNormals(const Positions& normals, Surface& mesh) {
     const double agreement = agreementWith(normals.array().isFinite().select(normals, 0.0).eval(),
                                            mesh.points, mesh.triangles);
     if (std::abs(agreement) < 0.5)
@@ -205,7 +198,7 @@ private:
     }
     const bool is_closed = !mesh_.hasOpen();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      FinishedMesh& mesh = pieces_[i].mesh;
+      Surface& mesh = pieces_[i];
       mesh.triangles = Eigen::Map<const Triangles>(
           corners[i].data(), 3, static_cast<Eigen::Index>(corners[i].size() / 3));
       mesh.faced_by = is_closed ? FacedBy::Outward : FacedBy::Viewpoint;
@@ -215,8 +208,8 @@ private:
   }
 
   void makeSphere() {
-    for (ViewPiece& piece : pieces_)
-      piece.sphere.resize(3, static_cast<Eigen::Index>(piece.mesh.input_of_vertex.size()));
+    for (Surface& piece : pieces_)
+      piece.sphere.resize(3, static_cast<Eigen::Index>(piece.input_of_vertex.size()));
     const Positions directions = directionsFrom(view_.place, nodes_.points);
     for (const Index node : indicesOf(piece_of_))
       if (piece_of_[node] >= 0)
@@ -226,8 +219,8 @@ private:
   /// At the vertices of each piece [unit of the input].
   std::vector<Indexed<double>> spacings() const {
     std::vector<Indexed<double>> all;
-    for (const ViewPiece& piece : pieces_)
-      all.emplace_back(piece.mesh.input_of_vertex.size());
+    for (const Surface& piece : pieces_)
+      all.emplace_back(piece.input_of_vertex.size());
     for (const Index node : indicesOf(piece_of_))
       if (piece_of_[node] >= 0)
         all[static_cast<std::size_t>(piece_of_[node])][vertex_of_node_[node]] =
@@ -236,7 +229,7 @@ private:
   }
 
   void addFilled(const Gap& gap, const Indexed<double>& spacing) {
-    FinishedMesh& mesh = pieceAt(gap.loop.front()).mesh;
+    Surface& mesh = pieceAt(gap.loop.front());
     std::vector<Index> loop;
     for (const Index node : gap.loop)
       loop.push_back(vertex_of_node_[node]);
@@ -257,27 +250,22 @@ private:
   Indexed<Index> piece_of_;
   Indexed<Index> vertex_of_node_;
   Indexed<Index> number_of_;  ///< of each triangle in its piece; -1: in none
-  std::vector<ViewPiece> pieces_;
+  std::vector<Surface> pieces_;
 };
 
-/// Fills the openings of pieces, and judges them.
-std::vector<Surface> surfacesOf(std::vector<ViewPiece> pieces, const Options& options,
-                                StageClock& clock) {
+/// Fills the openings of surfaces, and judges them.
+void finish(const Options& options, StageClock& clock, std::vector<Surface>& surfaces) {
   if (options.fill == FillMode::Smooth) {
     clock.begin("fill");
-    for (ViewPiece& piece : pieces)
-      fillSmoothly(clock.limited(), piece.mesh);
+    for (Surface& surface : surfaces) {
+      fillSmoothly(clock.limited(), surface);
+      if (surface.added_vertices > 0)
+        surface.sphere.resize(3, 0);
+    }
   }
   clock.begin("quality");
-  std::vector<Surface> surfaces;
-  for (ViewPiece& piece : pieces) {
-    Surface& surface = surfaces.emplace_back(judge(std::move(piece.mesh), {}, options));
-    if (surface.added_vertices == 0)
-      surface.sphere = std::move(piece.sphere);
-    surface.inputs = std::move(piece.inputs);
-    surface.vertex_of_input = std::move(piece.vertex_of_input);
-  }
-  return surfaces;
+  for (Surface& surface : surfaces)
+    judge(options, surface);
 }
 
 }  // namespace
@@ -298,7 +286,7 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   LeftOut left_out;
   const std::vector<Index> inputs = usableInputs(points, info, left_out);
   if (inputs.size() < 4)
-    return false;  // refused there
+    return false;  // the general method rejects it
   known =
       SearchedNodes{orderCheckedPoints(Positions(points(Eigen::all, inputs)), options.threads), {}};
   const OrderedPoints& nodes = known->nodes;
@@ -306,7 +294,7 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
   if (!view)
     return false;
   known->search = {};  // frees its tree
-  // Points that are too few for a part are one, as they are without a view.
+  // If there are too few points for a part, all of them are one, as without a view.
   if (given.parts == PartsMode::AsTopology &&
       inputs.size() < static_cast<std::size_t>(options.min_points))
     options.parts = PartsMode::All;
@@ -323,18 +311,17 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
       is_grid ? spacingOf(measured, clock.execution()) : std::move(view->spacing);
   SphereMesh mesh =
       openJumps(measured, spacing, view->mesh, static_cast<std::size_t>(options.min_points));
-  // Of a depth image of 242,749 points 3,071 openings become 197, and its surfaces stay apart.
+  // Most openings of depth images are noise of at most this size.
   constexpr std::size_t small_gap = 8;
   const GapLimits limits{options.surface == SurfaceMode::Open ? 0 : small_gap,
-                         static_cast<std::size_t>(options.fill_holes),
-                         std::ldexp(options.fill_holes_area, -2 * nodes.exponent)};
+                         static_cast<std::size_t>(options.fill_holes)};
   const std::vector<Gap> filled = fillGaps(nodes.points, spacing, view->mesh, limits, mesh);
-  std::vector<ViewPiece> pieces = PieceMaker(nodes, spacing, view->mesh, mesh, options)
-                                      .run(points, info.normals, inputs, filled, left_out);
+  std::vector<Surface> pieces = PieceMaker(nodes, spacing, view->mesh, mesh, options)
+                                    .run(points, info.normals, inputs, filled, left_out);
   std::size_t meshed = 0;
-  for (const ViewPiece& piece : pieces)
+  for (const Surface& piece : pieces)
     meshed += piece.inputs.size();
-  // Less of a cloud is no view.
+  // A view that shows less of the cloud is not used.
   const bool is_small = options.parts == PartsMode::Each && 10 * meshed < 9 * inputs.size();
   if (!isGiven(options) && (pieces.empty() || is_small))
     return false;
@@ -342,7 +329,8 @@ bool reconstructView(const Positions& points, const Options& given, const CloudI
     throw InvalidInput(
         "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
         " points; give a lower min_points, or parts = all");
-  result.surfaces = surfacesOf(std::move(pieces), options, clock);
+  finish(options, clock, pieces);
+  result.surfaces = std::move(pieces);
   result.left_out = std::move(left_out);
   result.view = View{timesPowerOfTwo(view->mesh.place, nodes.exponent), view->source};
   return true;

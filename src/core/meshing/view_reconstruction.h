@@ -16,7 +16,7 @@ namespace spherical_param::internal {
 ///
 /// \param points  3 x n, finite or not.
 /// \param given   options.
-/// \param known   receives the nodes of usableInputs() if they were found in vain.
+/// \param known   receives the nodes of usableInputs() for the general method.
 /// \return false if there is no such place, or other options need the general method. Nothing has
 ///         changed then.
 /// \throw InvalidInput if the caller gave a place from which there is no mesh, or such options.

@@ -86,8 +86,8 @@ double EnergyMesh::flipGain(Index t, int corner, double floor) const {
   const double before = energy_.cost(cab.radius) + energy_.cost(dba.radius) + edge(a, b, cab, dba) +
                         edge(b, c, cab, bc) + edge(c, a, cab, ca) + edge(a, d, dba, ad) +
                         edge(d, b, dba, db);
-  // No term is negative, and rounding is monotone: once some of them leave no more than the floor,
-  // all of them leave no more either, to the last bit.
+  // No term is negative, and rounding is monotone: if some terms leave at most the floor, so do all
+  // of them, to the last bit.
   const RawFacet raw_cad = facetOf(c, a, d);
   const RawFacet raw_cdb = facetOf(c, d, b);
   double after = energy_.cost(raw_cad.radius) + energy_.cost(raw_cdb.radius);
@@ -97,12 +97,12 @@ double EnergyMesh::flipGain(Index t, int corner, double floor) const {
   const Facet cdb = raw_cdb.facet();
   after += edge(c, d, cad, cdb) + edge(b, c, cdb, bc) + edge(c, a, cad, ca) + edge(a, d, cad, ad) +
            edge(d, b, cdb, db);
-  // Less than 16 terms, none negative, are added: a difference below their roundings is none. A
-  // flip that gains no more could be made and undone forever. It matters where the terms exceed
-  // some 300,000 mean lengths: of no cloud of the benchmark.
+  // Fewer than 16 terms, none negative, are added. A difference below their roundings is no gain:
+  // the flip could be made and undone forever. It matters where the terms exceed some 300,000 mean
+  // lengths.
   constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
   const double gain = std::abs(before - after) > rounding * before ? before - after : 0.0;
-  // Beyond the range of double the difference is no number, and no gain.
+  // Beyond the range of double the difference is NaN, which is no gain.
   return gain > floor ? gain : floor;
 }
 
@@ -124,7 +124,7 @@ double EnergyMesh::splitCost(Index t, Index v, double ceiling) const {
   const Facet& ab = facets_[mesh_.neighbor(t, 2)];
   const double before =
       energy_.cost(abc.radius) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
-  // As in flipGain(): the rest only adds to it.
+  // As in flipGain(): further terms only add to it.
   const RawFacet raw_vbc = facetOf(v, b, c);
   const RawFacet raw_vca = facetOf(v, c, a);
   const RawFacet raw_vab = facetOf(v, a, b);

@@ -40,7 +40,7 @@ public:
     energy_.bend = bend;
     energy_.mu = mu;
   }
-  /// That of the whole mesh [unit()].
+  /// The energy of the whole mesh [unit()].
   double energy() const;
   /// Which flips are allowed; all of them at first.
   using FlipRule = std::function<bool(const SphereMesh::Diamond&)>;

@@ -27,7 +27,7 @@ void Flips::queueSides(const std::vector<Index>& triangles) {
     for (int k = 0; k < 3; ++k) {
       const Index o = mesh.neighbor(t, k);
       if (t > o && due_.contains(o))
-        continue;  // that triangle's turn
+        continue;  // queued as a side of o
       const Index low = std::min(t, o);
       const int corner = t < o ? k : mesh.oppositeCorner(t, k);
       ++stamps_[low][static_cast<std::size_t>(corner)];
@@ -49,7 +49,7 @@ std::size_t Flips::flipQueued(const FractionReport& report, const Ends& ends) {
       break;
     }
     if (report && taken % kReportedItems == 0) {
-      // What is in the queue by now puts in less than it takes out.
+      // An estimate: most candidates from now on are void, or lead to no further ones.
       fraction = std::max(fraction,
                           static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
       report(fraction);

@@ -27,7 +27,7 @@ public:
   /// \param report receives an estimate of the fraction done. If it throws, the mesh stays
   ///               consistent.
   std::size_t flipAll(const FractionReport& report = {}, const Ends& ends = {});
-  /// Flips the sides of some triangles, and those whose gain that changes.
+  /// Flips sides of some triangles, then sides whose gain has changed by that, until none gains.
   void flipAround(const std::vector<Index>& triangles);
 
 private:

@@ -144,16 +144,15 @@ LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
     consider(t, k, {}, best);
   if (!best.flips.empty())
     return best;
-  // It takes as long as to take out and put back 8 vertices. With 1, subsampled and cut clouds take
-  // more than twice as long.
+  // It takes as long as to take out and put back 8 vertices.
   work_ += 8;
-  // Usual are 100 to 200 exact tests, at most 1,900. More are of degenerate triangles, where one
-  // test takes as long as half a vertex: 79 points of two places took 50 s.
-  constexpr std::size_t usual_tests = 2000;
+  // There are at most 1,900 exact tests unless triangles are degenerate. Then one test takes as
+  // long as half a vertex.
+  constexpr std::size_t typical_tests = 2000;
   const std::size_t tests_before = exact_tests_;
   best = bestTwoFlips(t);
   const std::size_t tests = exact_tests_ - tests_before;
-  work_ += tests > usual_tests ? (tests - usual_tests) / 2 : 0;
+  work_ += tests > typical_tests ? (tests - typical_tests) / 2 : 0;
   return best;
 }
 

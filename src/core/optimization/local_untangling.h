@@ -14,9 +14,6 @@ namespace spherical_param::internal {
 
 /// Flips edges among a few watched triangles so that fewer of them intersect. Open triangles do not
 /// count.
-///
-/// Without, 4 of 112 clouds more keep intersections, 236 pairs instead of 48 in all; with single
-/// flips only, 2 more and 89 pairs, and it takes longer.
 class LocalUntangling {
 public:
   /// \param mesh must outlive this.
@@ -31,7 +28,7 @@ public:
   /// how many pairs the number has changed since then; pairs of unwatched triangles count as new.
   int flipChangedApart();
 
-  /// No flips after this much more work: each leaves fewer pairs, but there may be many.
+  /// Ends the flips after this much more work.
   void limitWork(std::size_t most) { max_work_ = work_ + most; }
   /// Searches so far [vertices taken out and put back in the same time].
   std::size_t work() const { return work_; }

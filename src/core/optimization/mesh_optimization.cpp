@@ -150,9 +150,9 @@ bool unfold(Workbench& bench) {
 
 // --- Untangling ----------------------------------------------------------------------------------
 
-/// Ruins and recreates a part, and flips apart what intersects then: commits that if fewer
-/// triangles around it intersect, or as many at an energy that was lower before the flips. Returns
-/// whether it did.
+/// Ruins and recreates a part, and flips apart what intersects then. Commits if fewer pairs of
+/// triangles around it intersect, or as many after a change that lowered the energy before the
+/// flips. Returns whether it committed.
 bool tryByNumber(Workbench& bench, const std::vector<Index>& seeds, std::size_t size) {
   if (!bench.mayRepair())
     return false;
@@ -239,8 +239,8 @@ IntersectingPairs untangle(Workbench& bench, IntersectingPairs found, int rounds
 
 // --- From the first flips to the polish ----------------------------------------------------------
 
-/// Open triangles that no loop leads to are part of the surface, and must not intersect it.
-/// Returns whether some were closed.
+/// Closes the open triangles that others do not connect to a loop: they are part of the surface,
+/// and must not intersect it. Returns whether there were any.
 bool closeWithoutLoop(Workbench& bench) {
   if (!bench.openings)
     return false;
@@ -303,10 +303,9 @@ IntersectingPairs optimize(Workbench& bench, bool is_even, std::vector<Index> ro
 IntersectingPairs finishOn(const Positions& points, Workbench& bench) {
   bench.mesh.setPoints(points);
   closeWithoutLoop(bench);
-  // The smoothed points may have taken all the work: a few points then stayed tangled.
+  // The smoothed points may have taken all the work.
   bench.renewWork();
-  // More pairs are slow, and in vain: without this limit 8 of 10 noisy clouds keep 9 to 122
-  // intersections instead of 0. The second number matters only above 150,000 points.
+  // With more pairs the work is in vain. The second number matters only above 150,000 points.
   const std::size_t most = std::max<std::size_t>(1500, columnCount(points) / 100);
   IntersectingPairs found = findIntersections(bench.mesh, 2 * most, bench.report);
   return found.pairs.size() > most ? found : untangleSurface(bench, std::move(found), 0);
@@ -331,10 +330,9 @@ MeshOptimization optimizeMesh(const Positions& points, SphereMesh mesh, const Gr
   };
   std::vector<Index> rough = flip();
   Positions smoothed;
-  // Clouds of closed surfaces without noise have a fraction of rough vertices of 0.003 to 0.16, and
-  // coarse ones with limbs of a few points 0.36; with noise of a quarter of the points' distance it
-  // is 0.75 and more. Without smoothing, noise of half a spacing on the hand and of 1.5 on a sphere
-  // leaves 72 and 141 self-intersections instead of 0. More steps where more is rough gain nothing.
+  // Without noise, the fraction of rough vertices is at most 0.36, in coarse clouds with limbs of a
+  // few points; with noise of a quarter of the points' distance it is at least 0.75. Without
+  // smoothing, noise leaves self-intersections. More steps gain nothing.
   bench.log.is_noisy = 2 * rough.size() > graph.size() && !bench.isOutOfTime();
   if (bench.log.is_noisy) {
     const SmoothingOptions smoothing{SmoothingMethod::Umbrella, 3, false};

@@ -23,7 +23,7 @@ struct OptimizationOptions {
   std::uint32_t seed = 1;  ///< of the random choice of parts
   /// \see isEvenlySampled; unset: it is found.
   std::optional<bool> is_even = {};
-  double share = 1.0;  ///< of the points of a cloud that is meshed in parts, and of the work
+  double fraction = 1.0;  ///< of a cloud's points that this part has, and of the work
 };
 
 /// Report of an optimisation.

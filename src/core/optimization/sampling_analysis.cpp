@@ -48,7 +48,7 @@ std::optional<Eigen::Matrix2d> bendingOf(const Positions& local) {
 /// How far spread and bending at point i agree, and the most that they could.
 Eigen::Array2d agreementAt(Index i, const Positions& points, const Graph& graph) {
   const std::vector<Index> wide = withinTwoSteps(graph, i);
-  // With fewer points a quadric is not determined well enough. 5 changes one cloud of few points.
+  // With fewer points a quadric is not determined well enough.
   if (wide.size() < 8)
     return {0.0, 0.0};
   const Positions offsets = points(Eigen::all, wide).colwise() - points.col(i);
@@ -83,8 +83,7 @@ double unevennessAt(Index i, const Graph& graph) {
 }  // namespace
 
 Sampling analyzeSampling(const Positions& points, const Graph& graph, int threads) {
-  // The standard error of the mean is then below 0.02. With 1,250 samples four of 320 clouds
-  // change.
+  // The standard error of the mean is then below 0.02.
   const auto step = static_cast<Index>(std::max<std::size_t>(1, graph.size() / 2500));
   const std::size_t samples = graph.size() / static_cast<std::size_t>(step);
   // A sample is some eight times the work of other loops' items.

@@ -105,7 +105,7 @@ std::vector<double> biharmonicSeries(int steps) {
     omitted += std::abs(coefficients.back());
     coefficients.pop_back();
   }
-  // What does not vary must stay: the gain at k = 0, where T_i(-1) = (-1)^i, is 1.
+  // A constant must stay: the gain at k = 0, where T_i(-1) = (-1)^i, is 1.
   double gain = 0.0;
   for (std::size_t i = 0; i < coefficients.size(); ++i)
     gain += i % 2 == 0 ? coefficients[i] : -coefficients[i];

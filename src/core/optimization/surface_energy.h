@@ -45,8 +45,7 @@ struct RawFacet {
       radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
   }
 
-  /// Makes it an open triangle, at half of the cost: in full, the RMS of clouds with holes rises by
-  /// 1 %.
+  /// Makes it an open triangle, at half of the cost.
   void open() {
     is_open = true;
     radius *= 0.5;
@@ -106,16 +105,12 @@ struct SurfaceEnergy {
       return length * angle;
     if (bend == Bend::Power)
       return length * angle * std::sqrt(angle);
-    // With 0 and 20 degrees 2 and 3 models change, without self-intersections before and after.
-    // With 5 times the median angle around a vertex, where that is more, the models' RMS is 2 %
-    // higher.
     return length * std::max(0.0, angle - kPi / 18.0);
   }
 
 private:
-  /// Cost of an edge of an open triangle: too low makes holes, too high folds ears. With the full
-  /// price between two open triangles, open clouds of several views keep 37 self-intersections
-  /// instead of 0.
+  /// Cost of an edge of an open triangle: too low makes holes, too high folds ears. Half of it
+  /// between two open triangles, or open clouds of several views keep self-intersections.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
     if (openings->isRim(v, w))

@@ -18,7 +18,7 @@ Workbench::Workbench(const Positions& points, SphereMesh start, const Graph& gra
       has_no_time_(execution.time_limit == 0.0), time_left_(execution.time_limit) {
   namespace tuned = optimization_constants;
   const auto of_part =
-      static_cast<std::size_t>(options.share * static_cast<double>(tuned::kMaxWork));
+      static_cast<std::size_t>(options.fraction * static_cast<double>(tuned::kMaxWork));
   max_work_ = std::min(tuned::kMaxWorkOfPoint * (1000 + columnCount(points)),
                        std::max(of_part, tuned::kMinWork) + columnCount(points));
   renewWork();

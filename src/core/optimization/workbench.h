@@ -52,10 +52,10 @@ public:
 private:
   std::size_t work() const { return log.recreated + local.work(); }
 
-  /// Small clouds have their first flips whatever the limit [s].
+  /// Time by which the first flips may exceed the limit [s]: those of small clouds end before.
   static constexpr double kGrace = 0.1;
 
-  bool has_no_time_;  ///< even before the first flips, which all are made then, on any machine
+  bool has_no_time_;  ///< the limit is 0: all of the first flips are made, on any machine
   TimeLeft time_left_;
   IntersectingPairs known_;     ///< when the mesh was last searched
   std::size_t first_work_ = 0;  ///< before renewWork()

@@ -45,7 +45,7 @@ struct Embedding {
 ///
 /// \param graph   n nodes, connected, with positive edge lengths.
 /// \param points  3 x n, finite: the points that the nodes stand for.
-/// \param options when to end, starts, history
+/// \param options when to end, history
 /// \param seed    of the coarse graphs.
 /// \param execution threads, progress
 /// \return the embedding, the same, bit by bit, for any number of threads.

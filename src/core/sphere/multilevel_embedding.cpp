@@ -228,19 +228,18 @@ private:
 /// 3. Starts on finer and finer levels: the fewer nodes are around a limb, the easier the sphere
 ///    slips off it.
 /// 4. The barrier also on the graph itself, however hard it pulls.
-std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int starts) {
+std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels) {
   // Largest level on which an attempt starts; the bound limits the time: a start takes up to
   // 200 us a node. None of 578 clouds needs more than 4,312; with 100,000, scans of 300,000 points
   // take 10 to 14 s instead of 5.
   constexpr std::size_t max_start_size = 5000;
-  // An attempt with a barrier tries this many times as many starts. With 1, an elephant from eight
-  // depth images folds with one seed of nine.
-  constexpr int barrier_rounds = 4;
+  constexpr std::size_t few = 2;
+  // With a barrier, starts fail more often. With 2, an elephant from eight depth images folds with
+  // one seed of nine.
+  constexpr std::size_t many = 8;
   const std::size_t coarsest = levels.coarsest();
-  const auto few = static_cast<std::size_t>(starts);
-  std::vector<EmbeddingAttempt> attempts = {
-      {coarsest, EmbeddingBarrier::None, few, few},
-      {coarsest, EmbeddingBarrier::CoarseLevels, barrier_rounds * few, few}};
+  std::vector<EmbeddingAttempt> attempts = {{coarsest, EmbeddingBarrier::None, few, few},
+                                            {coarsest, EmbeddingBarrier::CoarseLevels, many, few}};
   for (std::size_t l = coarsest; l-- > 0 && levels.graph(l).size() <= max_start_size;)
     attempts.push_back({l, EmbeddingBarrier::None, few, 1});
   attempts.push_back({coarsest, EmbeddingBarrier::Everywhere, few, few});
@@ -252,7 +251,7 @@ std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int star
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
                         const EmbeddingOptions& options, const Execution& execution) {
   const EmbeddingLevels levels(graph, hierarchy, execution.threads);
-  for (const EmbeddingAttempt& attempt : attemptsOf(levels, options.starts))
+  for (const EmbeddingAttempt& attempt : attemptsOf(levels))
     if (std::optional<Embedding> embedding = Ascent(levels, attempt, options, execution).run())
       return std::move(*embedding);
   Embedding none;

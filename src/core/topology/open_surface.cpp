@@ -8,13 +8,12 @@ namespace spherical_param::internal {
 namespace {
 
 /// Whether the mesh has triangles over an opening.
-bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Options& options) {
+bool isFilled(const Opening& opening, bool is_cloud_flat, const Options& options) {
   if (is_cloud_flat)
     return false;
   return options.surface == SurfaceMode::Closed ||
          (options.surface == SurfaceMode::Auto && !opening.isCertain()) ||
-         opening.loop.size() <= static_cast<std::size_t>(options.fill_holes) ||
-         opening.area * unit * unit <= options.fill_holes_area;
+         opening.loop.size() <= static_cast<std::size_t>(options.fill_holes);
 }
 
 }  // namespace
@@ -25,7 +24,7 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings f
   Openings open;
   open.spacing = found.spacing;
   for (Opening& opening : found.openings) {
-    opening.is_filled = isFilled(opening, is_flat, unit, options);
+    opening.is_filled = isFilled(opening, is_flat, options);
     if (!opening.is_filled)
       open.openings.push_back(opening);
   }

@@ -45,7 +45,7 @@ bool hasTangle(const Surface& result) {
   return 100 * result.left_out_triangles > static_cast<std::size_t>(result.triangles.cols());
 }
 
-/// Whether what fills or lies along something else is meshed.
+/// Whether the points sample no surface: they fill a volume, or lie in layers or along curves.
 bool isNoSurface(const SurfaceDiagnosis& diagnosis) {
   return diagnosis.fills_volume || diagnosis.is_layered || diagnosis.is_on_curves;
 }
@@ -57,8 +57,8 @@ bool isRough(const Surface& result) {
          !result.diagnosis.is_on_lines && !isNoSurface(result.diagnosis);
 }
 
-/// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
-/// sphere was asked for that the option does not override, or else that option.
+/// A finding about something that the cloud shows and the mesh lacks. It names the topology if
+/// that asks for a sphere and the option does not override it, else the option.
 Finding shown(const std::string& text, const Options& given, const std::string& option,
               const std::string& value, bool is_fault) {
   const bool is_overridden = textOf(findOption(option).get(given)) != "topology";
@@ -67,18 +67,13 @@ Finding shown(const std::string& text, const Options& given, const std::string& 
   return {text, option, value, is_fault};
 }
 
-bool isRaw(const Options& options) {
-  return options.method == Method::Paper;
-}
-
 bool isFolded(const Options& options, const Surface& result) {
-  // Above this fraction of edges beyond the graph's 2-ring a mesh without optimisation is folded.
-  // Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
-  // filled opening of a bowl of some thousand points 0.002. Measured on local Delaunay
-  // neighbourhoods.
+  // Above this fraction of edges outside the graph, a mesh without optimisation is folded. Unfolded
+  // embeddings of closed surfaces have at most 0.0005, the filled opening of a bowl of some
+  // thousand points 0.002, folded limbs at least 0.003.
   constexpr double max_edges_outside = 0.001;
-  return result.isFolded() ||
-         (isRaw(options) && result.diagnosis.edges_outside_graph > max_edges_outside);
+  return result.isFolded() || (options.method == Method::Paper &&
+                               result.diagnosis.edges_outside_graph > max_edges_outside);
 }
 
 Finding partsOf(const SurfaceDiagnosis& diagnosis, const Options& given) {
@@ -102,7 +97,8 @@ Finding handlesOf(const Surface& result, const Options& given) {
   const std::string text = result.genus() == 0
                                ? counted(missing, "handle") + ", cut: the mesh is a sphere"
                                : counted(missing, "more handle") + ", cut";
-  const bool may_have = withTopology(given).handles == HandleMode::None && !isRaw(given);
+  const bool may_have =
+      withTopology(given).handles == HandleMode::None && given.method == Method::Default;
   return may_have ? shown(text, given, "handles", "auto", true) : Finding{text, "", "", true};
 }
 
@@ -124,16 +120,15 @@ std::optional<Finding> baseOf(const Surface& result, const Options& given) {
   return std::nullopt;
 }
 
-/// Certain openings that the mesh fills are a fault unless the options ask for it; without any,
-/// possible ones are reported.
+/// Reports the certain openings that the mesh fills, which is a fault unless the options ask for
+/// it. If it fills none, reports the possible openings.
 std::optional<Finding> filledOf(const Surface& result, const Options& given) {
   const bool is_open = given.surface == SurfaceMode::Open;
   const std::size_t certain = result.filledOpenings();
   std::size_t count = 0;
   std::size_t points = 0;
-  // From this certainty on, an opening is a possible one: 5.4 spacings wide. Of 140 clouds of whole
-  // objects (with noise, at random, thinned) 3 have such an opening; of 28 with holes or of several
-  // views 22 do. With 0.5 these are 1 and 20, with 0.3 6 and 24.
+  // Of a width of 5.4 spacings. Clouds of whole objects hardly ever have such an opening, most
+  // clouds with holes do.
   constexpr double min_certainty = 0.4;
   const auto is_possible = [](const Opening& opening) {
     return opening.certainty >= min_certainty && !opening.is_flat;
@@ -152,7 +147,7 @@ std::optional<Finding> filledOf(const Surface& result, const Options& given) {
   const std::string of = " of " + counted(points, "point") + ", filled";
   const std::string kind = certain > 0 ? "opening" : "possible opening";
   const std::string text = count == 1 ? kind + of : counted(count, kind) + ", the largest" + of;
-  const bool is_fault = certain > 0 && given.fill_holes == 0 && given.fill_holes_area == 0.0;
+  const bool is_fault = certain > 0 && given.fill_holes == 0;
   Finding finding = certain > 0 && !is_open
                         ? shown(text, given, "surface", "open", is_fault)
                         : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};
@@ -180,22 +175,23 @@ std::optional<Finding> embeddingOf(const Options& options, const Surface& result
   return std::nullopt;
 }
 
-/// The mesh is folded.
 Finding foldOf(const Options& given, const Surface& result) {
-  Finding fold{"the mesh is folded: " + percent(result.diagnosis.edges_outside_graph) +
-                   " of its edges join points that are far apart in the cloud",
-               "", "", true};
-  if (isRaw(given))
-    std::tie(fold.option, fold.value) = std::pair("method", "default");
-  else if (isRough(result))
-    std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
-  else if (result.is_noisy && result.consolidation && given.smoothing == 0)
-    std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
-  return fold;
+  const auto fold_with = [&](const char* option, const char* value) {
+    return Finding{"the mesh is folded: " + percent(result.diagnosis.edges_outside_graph) +
+                       " of its edges join points that are far apart in the cloud",
+                   option, value, true};
+  };
+  if (given.method == Method::Paper)
+    return fold_with("method", "default");
+  if (isRough(result))
+    return fold_with("consolidation", "auto");
+  if (result.is_noisy && result.consolidation && given.smoothing == 0)
+    return fold_with("smoothing", "5");
+  return fold_with("", "");
 }
 
-/// Adds a finding of a part to those of all. The largest of a kind speaks for all of them, with an
-/// option that helps one of them.
+/// Adds a finding of a part to those of all parts. Of each kind the largest finding stays; if it
+/// names no option, it gets that of another one.
 void addTo(std::vector<Finding>& all, Finding finding, Index part) {
   auto same = std::find_if(all.begin(), all.end(),
                            [&](const Finding& other) { return other.kind == finding.kind; });
@@ -388,16 +384,16 @@ void summarize(std::size_t parts_in_all, Result& result) {
   LeftOut stray = result.left_out;
   stray.not_finite.clear();
   if (const std::string text = stray.text(); !text.empty()) {
-    constexpr double min_share = 0.01;
+    constexpr double min_fraction = 0.01;
     std::size_t taken = 0;
     for (const Surface& surface : surfaces)
       taken += surface.vertex_of_input.size();
     const auto count = static_cast<double>(stray.count());
-    const double share = count / (count + static_cast<double>(taken));
+    const double fraction = count / (count + static_cast<double>(taken));
     result.verdict.replace(result.verdict.size() - 1, 1,
-                           share < min_share
-                               ? "; " + text + " left out."
-                               : "; " + percent(share) + " of the points left out: " + text + ".");
+                           fraction < min_fraction ? "; " + text + " left out."
+                                                   : "; " + percent(fraction) +
+                                                         " of the points left out: " + text + ".");
   }
   if (parts_in_all > surfaces.size())
     result.verdict += " " + counted(parts_in_all - surfaces.size(), "part") + " cannot be meshed.";

@@ -132,7 +132,7 @@ void toInput(OrderedPoints& nodes, Surface& result) {
 
 void toInput(Consolidation& consolidation, Surface& result) {
   result.consolidation = consolidation.report;
-  // Of those with a vertex. Points that came to one place are one vertex.
+  // Only points with a vertex count. Points that came to one place are one vertex.
   Index merged = 0;
   for (std::size_t point = 0; point < result.vertex_of_input.size(); ++point)
     if (result.vertex_of_input[point] >= 0)

@@ -20,22 +20,17 @@
 #include <vector>
 
 bool spherical_param::SurfaceDiagnosis::isFolded() const {
-  // Closed scans have up to 0.05, optimised meshes of scans from one side 0.04, of the torus 0.06
-  // and of closed shapes with noise of half the distance of neighbours less still; noise twice as
-  // strong has 0.11 and more, and the torus 0.28 and more as long as its mesh is folded.
+  // Sound meshes have at most 0.06. With noise of a spacing it is at least 0.11, and the mesh of a
+  // torus has at least 0.28 as long as it is folded.
   return edges_outside_graph > 0.1;
 }
 
 namespace spherical_param::internal {
 namespace {
 
-// The thresholds rest on measurements: raw, optimised and true meshes of 14 closed scans of very
-// different sampling and of generated closed shapes, on none of which anything may be reported; on
-// a torus and a pair of bodies of 1,000 to 50,000 points.
-
-/// The thresholds hold for graphs of a mean degree of up to one and a half times this: local
-/// Delaunay neighbourhoods have 5 to 6, the 8 nearest neighbours 8 to 9. Of others, that number of
-/// shortest edges of each point are looked at: with the 25 nearest, no handle of a torus is found.
+/// The thresholds hold for graphs with a mean degree of at most 1.5 times this: tangent Delaunay
+/// graphs have 5 to 6, the 8 nearest neighbours 8 to 9. Of denser graphs only this number of
+/// shortest edges of each point is used.
 constexpr std::size_t kThinnedDegree = 8;
 
 /// {lower, higher}
@@ -45,7 +40,7 @@ Edge edgeOf(Index a, Index b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// The edges that the mesh has and the graph has not.
+/// The edges of the mesh that are not in the graph.
 struct Differences {
   /// Edges whose ends are more than two steps apart in the graph.
   std::size_t outside_graph = 0;
@@ -93,8 +88,8 @@ struct MeshAndGraph {
 
 // --- Parts ---------------------------------------------------------------------------------------
 
-/// Pairs of parts with a gap of at least 4 times the distance of the points there, and the number
-/// of parts that these are; all ends are listed.
+/// Finds the pairs of parts with a gap of at least 4 times the distance of the points there, and
+/// counts these parts. Lists the ends of all their bridges.
 ///
 /// \param edges of the bridges, ascending.
 void findBridges(const MeshAndGraph& surface, const Graph& graph,
@@ -102,7 +97,7 @@ void findBridges(const MeshAndGraph& surface, const Graph& graph,
                  SurfaceDiagnosis& result) {
   if (bridges.empty())
     return;
-  // There are no bridges within a part.
+  // A part is what edges other than bridges connect.
   UnionFind parts(graph.size());
   for (const Index a : graph.nodes())
     for (const Index b : graph.row(a))
@@ -139,7 +134,7 @@ void findBridges(const MeshAndGraph& surface, const Graph& graph,
   std::set<Index> separate;
   for (const auto& [a, b] : apart)
     separate.insert({parts.find(a), parts.find(b)});
-  // A gap that is closed elsewhere joins two, too.
+  // The parts beside a gap may be joined elsewhere: the gap still counts as two parts.
   result.joined_parts = apart.empty() ? 0 : std::max<std::size_t>(2, separate.size());
 }
 
@@ -148,7 +143,7 @@ void findBridges(const MeshAndGraph& surface, const Graph& graph,
 /// Whether the mesh, which is oriented, is torn where the surface turns over: edges of the graph
 /// that lie in the surface join vertices with opposite normals, far from each other on the mesh.
 bool isTorn(const MeshAndGraph& surface) {
-  // A shorter tear is none for sure.
+  // A shorter tear may be chance.
   constexpr std::size_t min_edges = 10;
   constexpr double min_cosine = 0.9;
   constexpr double max_slope = 0.3;
@@ -159,7 +154,7 @@ bool isTorn(const MeshAndGraph& surface) {
     });
     normals.col(v).stableNormalize();
   }
-  // Neighbours on the mesh, or with a common one.
+  // Whether two vertices are neighbours on the mesh, or have a common neighbour.
   const auto are_near = [&](Index v, Index w) {
     const auto ring_of = [&](Index of) {
       std::vector<Index> ring{of};
@@ -204,34 +199,26 @@ Graph thinned(const Graph& graph, const std::vector<Bridge>& bridges) {
   return withEdges({}, edges, graph.size());
 }
 
-/// The marks of all findings.
+/// Marks the triangles at bridges and at edges outside the graph.
 ///
-/// \param outside_graph triangles at edges outside the graph.
-std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface, const SurfaceDiagnosis& diagnosis,
-                                  const std::vector<Opening>& openings,
+/// \param outside_graph triangles at these edges.
+std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface,
+                                  const std::vector<PartBridge>& bridges,
                                   const std::vector<Index>& outside_graph) {
   std::vector<std::uint8_t> marks(columnCount(surface.triangles), 0);
   const auto mark = [&](Index t, std::uint8_t bit) { marks[static_cast<std::size_t>(t)] |= bit; };
-  const auto mark_around = [&](const std::vector<Index>& vertices, std::uint8_t bit) {
-    for (const Index v : vertices)
-      surface.forEachTriangle(v, [&](Index t, Index) { mark(t, bit); });
-  };
-  for (const Opening& opening : openings)
-    if (opening.isCertain())
-      for (const Index t : opening.triangles)
-        mark(t, triangle_mark::filled_hole);
-  for (const PartBridge& bridge : diagnosis.bridges)
-    mark_around(bridge.vertices, triangle_mark::part_bridge);
+  for (const PartBridge& bridge : bridges)
+    for (const Index v : bridge.vertices)
+      surface.forEachTriangle(v, [&](Index t, Index) { mark(t, triangle_mark::part_bridge); });
   for (const Index t : outside_graph)
     mark(t, triangle_mark::outside_graph);
   return marks;
 }
 
-/// Leaves at most `count` of the vertices of each finding, spread over their order.
-template <typename Finding>
-void shorten(std::vector<Finding>& findings, std::size_t count) {
-  for (Finding& finding : findings) {
-    std::vector<Index>& vertices = finding.vertices;
+/// Leaves at most `count` vertices of each bridge, spread over their order.
+void shorten(std::vector<PartBridge>& bridges, std::size_t count) {
+  for (PartBridge& bridge : bridges) {
+    std::vector<Index>& vertices = bridge.vertices;
     for (std::size_t i = 0; vertices.size() > count && i < count; ++i)
       vertices[i] = vertices[i * vertices.size() / count];
     vertices.resize(std::min(count, vertices.size()));
@@ -242,7 +229,6 @@ void shorten(std::vector<Finding>& findings, std::size_t count) {
 
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
-                                 const std::vector<Opening>& openings,
                                  const DiagnosisOptions& options, int threads) {
   std::vector<Edge> bridge_edges;
   bridge_edges.reserve(bridges.size());
@@ -263,7 +249,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   findBridges(surface, graph, bridges, bridge_edges, result);
   result.is_one_sided = options.may_be_one_sided && isTorn(surface);
   if (options.mark_triangles)
-    result.triangle_marks = marksOf(surface, result, openings, differences.triangles);
+    result.triangle_marks = marksOf(surface, result.bridges, differences.triangles);
   shorten(result.bridges, options.max_vertices);
   return result;
 }

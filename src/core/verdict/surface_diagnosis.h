@@ -22,14 +22,12 @@ struct DiagnosisOptions {
 /// \param graph     n nodes, lengths in the unit of the points. Thresholds were measured on tangent
 ///                  Delaunay graphs and hold for 8 nearest neighbours; of a graph with a mean
 ///                  degree above 12, the 8 shortest edges of each point are used.
-/// \param bridges   edges of the graph that join parts (GraphReport::bridges).
-/// \param openings  of the graph, with the triangles over filled ones; to be marked.
-/// \param options   lists, marks
+/// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
+/// \param options   lists, marks: triangle_mark::part_bridge and outside_graph.
 /// \param threads 0: one for each processor; [0, 1024].
 /// \return the diagnosis, the same for any number of threads. Cost: O(n).
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
-                                 const std::vector<Opening>& openings,
                                  const DiagnosisOptions& options = {}, int threads = 0);
 
 }  // namespace spherical_param::internal

@@ -240,19 +240,14 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
       continue;
     for (Index v = begin; gap.loop.empty() || v != begin; v = next[v])
       gap.loop.push_back(v);
-    Eigen::Vector3d twice = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d origin = points.col(begin);
     double length = 0.0;  // in spacings
-    for (const Index v : gap.loop) {
-      twice += (points.col(v) - origin).cross(points.col(next[v]) - origin);
+    for (const Index v : gap.loop)
       length += edgeLength(points, v, next[v]) / spacing[v];
-    }
-    gap.area = twice.norm() / 2.0;
     // Of one with several loops, surfaces of different depth are on its sides.
     // A point inside would be a spike: it may be far behind.
     const bool is_small = edges <= most.small && length <= 2.0 * static_cast<double>(most.small) &&
                           gap.triangles.size() + 2 == edges;
-    if (gap.loop.size() != edges || !(is_small || edges <= most.edges || gap.area <= most.area))
+    if (gap.loop.size() != edges || !(is_small || edges <= most.edges))
       continue;
     for (const Index t : gap.triangles)
       mesh.setOpen(t, false);

@@ -34,19 +34,17 @@ SphereMesh openJumps(const Positions& points, const Indexed<double>& spacing, co
 struct Gap {
   std::vector<Index> loop;       ///< vertices around it
   std::vector<Index> triangles;  ///< over it
-  double area = 0.0;             ///< length of the vector area of the loop
 };
 
 /// Which gaps are filled.
 struct GapLimits {
   std::size_t small = 0;  ///< edges of gaps that noise makes: short, and without points inside
   std::size_t edges = 0;  ///< of any gaps
-  double area = 0.0;      ///< of any gaps
 };
 
 /// Fills gaps with the triangles that were opened there.
 ///
-/// \return those that are filled for their edges or area.
+/// \return those that are filled because they have at most GapLimits::edges.
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
                           const ViewMesh& view, const GapLimits& most, SphereMesh& mesh);
 

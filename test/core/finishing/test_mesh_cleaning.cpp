@@ -46,7 +46,6 @@ Positions noisyLens(Index n, double thickness, std::uint64_t seed) {
 }
 
 TEST(MeshCleaning, AClosedMeshStaysClosedWithAllPoints) {
-  // A triangle of each was left out.
   for (const Positions& points :
        {noisyLens(400, 0.2, 9), noisyLens(600, 0.16, 1), noisyLens(600, 0.16, 10)}) {
     const Result result = reconstruct(points);

@@ -50,54 +50,6 @@ TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
   EXPECT_TRUE(topology.unused_vertices.empty());
 }
 
-// A flat disc of 2,340 triangles, and 60 vertices above it, to the last bit in its plane: all their
-// triangles are open, and whatever joins them to the rim crosses many.
-TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
-  constexpr Index n = 60;
-  constexpr Index rings = 20;
-  constexpr Index center = n * rings;
-  constexpr Index tip = center + 1;
-  Positions points = Positions::Zero(3, tip + n);
-  std::vector<std::array<Index, 3>> all;
-  std::vector<Index> loop;
-  for (Index i = 0; i < n; ++i) {
-    const Index next = (i + 1) % n;
-    for (Index ring = 0; ring < rings; ++ring) {
-      points.col(ring * n + i) =
-          onCircle(2.0 * kPi * i / n, 1.0 - static_cast<double>(ring) / rings);
-      if (ring + 1 < rings) {
-        all.push_back({ring * n + i, (ring + 1) * n + i, ring * n + next});
-        all.push_back({ring * n + next, (ring + 1) * n + i, (ring + 1) * n + next});
-      }
-    }
-    all.push_back({center - n + i, center, center - n + next});
-    // Above: around the tip, and a vertex in each triangle but one.
-    const Index v = tip + i;
-    points.col(v) = onCircle(2.4 * i, 0.3 + 0.6 * i / n);  // where triangles are not thin
-    loop.push_back(i);
-    if (i == 0) {
-      all.push_back({i, next, tip});
-      continue;
-    }
-    all.push_back({i, next, v});
-    all.push_back({next, tip, v});
-    all.push_back({tip, i, v});
-  }
-  for (Index v = tip; v < tip + n; ++v)
-    loop.push_back(v);
-  const Triangles triangles =
-      Eigen::Map<const Triangles>(all[0].data(), 3, static_cast<Eigen::Index>(all.size()));
-  const Triangles surface = opened(points, triangles, 1e-3, loop);
-  const MeshTopology topology = checkTopology(surface, columnCount(points));
-  EXPECT_TRUE(topology.manifold());
-  EXPECT_TRUE(topology.unused_vertices.empty());
-  // A few vertices find no such triangle, or cannot be taken out: theirs cross many.
-  std::set<Index> crossing;
-  for (const auto& [t, u] : findSelfIntersections(points, surface))
-    crossing.insert(surface.col(t).maxCoeff() > center ? t : u);
-  EXPECT_LT(crossing.size(), 6U);
-}
-
 TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
   // The edges from the upper tip to 0 and to 4 are long; only the first is in a loop.
   const DoublePyramid pyramid(8);

@@ -37,7 +37,7 @@ TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
 }
 
 /// Rings of 40 vertices in the plane z = 0 around an opening, over which a fan has the triangles.
-struct Plate : FinishedMesh {
+struct Plate : Surface {
   Plate() {
     points.resize(3, 120);
     triangles.resize(3, 198);
@@ -57,14 +57,14 @@ struct Plate : FinishedMesh {
   }
 };
 
-FinishedMesh filled(FinishedMesh mesh, std::optional<double> time_limit = std::nullopt) {
+Surface filled(Surface mesh, std::optional<double> time_limit = std::nullopt) {
   fillSmoothly({1, {}, time_limit}, mesh);
   return mesh;
 }
 
 TEST(SmoothFill, OfAPlateIsFlatAndAsDenseAsThePlate) {
   const Plate plate;
-  const FinishedMesh fill = filled(plate);
+  const Surface fill = filled(plate);
   EXPECT_EQ(fill.points.leftCols(120), plate.points);
   EXPECT_LT(fill.points.row(2).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
@@ -79,12 +79,12 @@ TEST(SmoothFill, OfAPlateIsFlatAndAsDenseAsThePlate) {
   for (const auto& [v, w] : sides)
     sum += (fill.points.col(v) - fill.points.col(w)).norm();
   const double mean = sum / static_cast<double>(sides.size());
-  EXPECT_GT(mean, 0.5 * 0.16);  // edges of the rim
+  EXPECT_GT(mean, 0.5 * 0.16);  // edges of the boundary loop
   EXPECT_LT(mean, 2.0 * 0.16);
 }
 
 TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
-  // A sheet close above the plate, whose rim rises: the bent fill would pass through it.
+  // A sheet close above the plate, whose boundary rises: the bent fill would pass through it.
   Plate plate;
   for (Index i = 0; i < 120; ++i)
     plate.points(2, i) = -0.3 * (i / 40);
@@ -93,9 +93,9 @@ TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
   plate.points.rightCols(3) << -3, 3, 0, -3, -3, 3, 0.02, 0.02, 0.02;
   plate.triangles.conservativeResize(3, 199);
   plate.triangles.col(198) << 120, 121, 122;
-  const FinishedMesh fill = filled(plate);
+  const Surface fill = filled(plate);
   EXPECT_GT(fill.points.cols(), 123);
-  EXPECT_TRUE(fill.intersecting.pairs.empty());
+  EXPECT_TRUE(fill.self_intersections.empty());
   EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
   plate.points = below;
   plate.triangles.conservativeResize(3, 198);
@@ -106,7 +106,7 @@ TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
 
 TEST(SmoothFill, LosesNoSurfaceToATimeLimit) {
   const Plate plate;
-  const FinishedMesh flat = filled(plate, 0.0);
+  const Surface flat = filled(plate, 0.0);
   EXPECT_TRUE(flat.is_out_of_time);
   EXPECT_EQ(flat.triangles, plate.triangles);
   const Positions band = pointsWhere(
@@ -129,7 +129,7 @@ TEST(SmoothFill, WhatIsNoDiscStays) {
   Plate plate;
   plate.points.rightCols(40) *= 3.0;
   plate.openings[0].triangles = range(80, 160);
-  const FinishedMesh fill = filled(plate);
+  const Surface fill = filled(plate);
   EXPECT_EQ(fill.points, plate.points);
   EXPECT_EQ(fill.triangles, plate.triangles);
   // Without two triangles it is a disc.

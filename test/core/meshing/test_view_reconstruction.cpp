@@ -2,12 +2,8 @@
 #include "depth_images.h"
 #include "open_shapes.h"
 
-#include <limits>
-
 namespace spherical_param::test {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Options seenFrom(const Eigen::Vector3d& place) {
   Options options;
@@ -60,7 +56,7 @@ TEST(ViewReconstruction, OfADepthImageHasItsSurfaces) {
 TEST(ViewReconstruction, OfAnImageHalfOfWhichIsNotFinite) {
   Positions points = depthImage(80, 60, boxBeforeWall);
   for (Index i = 0; i < points.cols(); i += 2)
-    points.col(i).setConstant(kNaN);
+    points.col(i).setConstant(std::nan(""));
   const Result result = reconstruct(points);
   expectViews(points, result);
   EXPECT_EQ(result.left_out.not_finite.size(), 2400U);
@@ -107,23 +103,12 @@ TEST(ViewReconstruction, OptionsKeepTheirMeaning) {
   EXPECT_THROW(run(given("parts", "each", "min_points", 3000)), InvalidInput);
   EXPECT_EQ(run(given("time_limit", 0.0)).surfaces.size(), 2U);
   const std::size_t hole = largest.surface().boundary[1].size();
-  const auto filled = [&](const char* option, double value) {
-    Options options;
-    setOption(options, option, option[10] == '\0' ? OptionValue(std::int64_t(value)) : value);
-    options.details = true;
-    return run(options).surfaces.front();
-  };
   // The wall stays open where the box is.
-  EXPECT_EQ(filled("fill_holes", static_cast<double>(hole)).boundary.size(), 2U);
-  for (const char* option : {"smoothing", "consolidation", "outliers", "intersections"}) {
-    const std::map<std::string, OptionValue> values = {{"smoothing", std::int64_t{5}},
-                                                       {"consolidation", std::string("auto")},
-                                                       {"outliers", 4.0},
-                                                       {"intersections", std::string("keep")}};
-    Options options;
-    setOption(options, option, values.at(option));
-    EXPECT_FALSE(reconstruct(points, options).view) << option;
-    EXPECT_THROW(run(options), InvalidInput) << option;
+  EXPECT_EQ(run(given("fill_holes", static_cast<int>(hole))).surface().boundary.size(), 2U);
+  for (const Options& options : {given("smoothing", 5), given("consolidation", "auto"),
+                                 given("outliers", 4.0), given("intersections", "keep")}) {
+    EXPECT_FALSE(reconstruct(points, options).view);
+    EXPECT_THROW(run(options), InvalidInput);
   }
 }
 

@@ -46,7 +46,7 @@ TEST(EnergyMesh, TheChangeIsThatOfTheEnergyByItsDefinition) {
     }
 }
 
-TEST(EnergyMesh, WhatIsRolledBackLeavesEverythingBitByBit) {
+TEST(EnergyMesh, RollingBackRestoresEveryBit) {
   const Case of = roughCases().front();
   EnergyMesh mesh = meshOf(of);
   const auto gains = [&] {
@@ -77,25 +77,17 @@ TEST(EnergyMesh, WhatIsRolledBackLeavesEverythingBitByBit) {
   EXPECT_EQ(gains(), before);
 }
 
-TEST(EnergyMesh, IntersectionsAreThoseOfItsTriangles) {
+TEST(EnergyMesh, IntersectionsAreThoseOfItsTrianglesAlsoAfterChanges) {
   for (const Case& of : roughCases()) {
     EnergyMesh mesh = meshOf(of);
-    const auto all = findSelfIntersections(of.points, of.triangles);
-    EXPECT_EQ(findIntersections(mesh, 10000, {}).pairs, all);
-    EXPECT_TRUE(all.empty() || findIntersections(mesh, 1, {}).is_sample);
-    // Other positions of the same points.
-    const Positions moved = withNoise(of.points, 0.05, 8);
-    mesh.setPoints(moved);
-    EXPECT_EQ(findIntersections(mesh, 10000, {}).pairs, findSelfIntersections(moved, of.triangles));
-  }
-}
-
-TEST(EnergyMesh, IntersectionsOfWhatWasTouchedAreThoseOfASearch) {
-  for (const Case& of : roughCases()) {
-    EnergyMesh mesh = meshOf(of);
+    const auto expected = [&](const Positions& points) {
+      return findSelfIntersections(points, mesh.mesh().triangles());
+    };
+    IntersectingPairs found = findIntersections(mesh, 10000, {});
+    EXPECT_EQ(found.pairs, expected(of.points));
+    EXPECT_TRUE(found.pairs.empty() || findIntersections(mesh, 1, {}).is_sample);
     EXPECT_EQ(mesh.takeTouched().size(), columnCount(of.triangles));
     EXPECT_TRUE(mesh.takeTouched().empty());
-    IntersectingPairs found = findIntersections(mesh, 10000, {});
     std::mt19937_64 random(7);
     for (const bool is_kept : {true, false, true}) {
       mesh.begin();
@@ -105,12 +97,16 @@ TEST(EnergyMesh, IntersectionsOfWhatWasTouchedAreThoseOfASearch) {
       else
         mesh.rollBack();
       updateIntersections(mesh, mesh.takeTouched(), found);
-      EXPECT_EQ(found.pairs, findIntersections(mesh, 10000, {}).pairs);
+      EXPECT_EQ(found.pairs, expected(of.points));
     }
+    // Other positions of the same points.
+    const Positions moved = withNoise(of.points, 0.05, 8);
+    mesh.setPoints(moved);
+    EXPECT_EQ(findIntersections(mesh, 10000, {}).pairs, expected(moved));
   }
 }
 
-TEST(EnergyMesh, BoundsOfGainsAndCostsChangeNoneBeyondThem) {
+TEST(EnergyMesh, GainsAndCostsBeyondTheirBoundsAreExact) {
   for (const Case& of : roughCases()) {
     EnergyMesh mesh = meshOf(of);
     for (Index t = 0; t < mesh.mesh().size(); ++t) {

@@ -41,7 +41,7 @@ TEST(Flips, EndWhenNoFlipGains) {
     }
 }
 
-TEST(Flips, AroundAFlippedEdgeFlipItBack) {
+TEST(Flips, FlipsAroundAFlippedEdgeFlipItBack) {
   const Case of = ellipsoid(200, 0.8, 0.6);
   EnergyMesh mesh = meshOf(of);
   Flips flips(mesh);
@@ -57,7 +57,7 @@ TEST(Flips, AroundAFlippedEdgeFlipItBack) {
   EXPECT_GT(flipped, 10);
 }
 
-TEST(Flips, NoneIsMadeForItsRounding) {
+TEST(Flips, NoFlipIsMadeForRoundingAlone) {
   // Beside lengths this small, all that is rounded off looks like a gain: of the two diagonals of a
   // rectangle, each may gain on the other. Of 600,000 turned boxes it does on these.
   const Case cube = radialStart(cubeGrid(2));

@@ -94,7 +94,7 @@ TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {
     // Twice, as on noise; a part of at most 96 vertices may begin below the limit.
     EXPECT_LE(result.report.recreated, 2 * (10000 + 10 * static_cast<std::size_t>(n) + 96));
     OptimizationOptions of_small_part;
-    of_small_part.share = 0.01;
+    of_small_part.fraction = 0.01;
     EXPECT_LE(optimize(of, of_small_part).report.recreated,
               2 * (2000 + static_cast<std::size_t>(n) + 96));
   }

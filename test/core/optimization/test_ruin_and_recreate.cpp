@@ -36,7 +36,7 @@ TEST(RuinAndRecreate, MovesThatGainAreKeptAndOthersLeaveTheMesh) {
   EXPECT_GT(recreated, 20);
 }
 
-TEST(RuinAndRecreate, WhatIsAcceptedIsUpToTheCaller) {
+TEST(RuinAndRecreate, TheCallerDecidesWhatIsAccepted) {
   const Case of = noisySphere(300, 0.5, 2);
   EnergyMesh mesh = meshOf(of);
   Flips flips(mesh);

@@ -14,9 +14,7 @@ TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
   const Cloud cloud = dentedCloud(3000);
   const Embedding one = solve(cloud.graph, converging(1e-12), 200, 1);
   for (const std::uint32_t seed : {2U, 3U, 4U}) {
-    Setting options = converging(1e-12);
-    options.starts = 1;
-    const Embedding other = solve(cloud.graph, options, 300, seed);
+    const Embedding other = solve(cloud.graph, converging(1e-12), 300, seed);
     EXPECT_NEAR(energyOf(cloud.graph, other), energyOf(cloud.graph, one),
                 1e-9 * energyOf(cloud.graph, one));
     // Up to a rotation or reflection: the angles between nodes are the same.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kPoints = 1000;
 
-/// Nothing is to be said of it.
+/// A result without findings.
 Surface soundResult() {
   Surface result;
   result.vertex_of_input.resize(kPoints);
@@ -124,7 +124,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   });
 }
 
-/// A base with an area of so much of the mesh.
+/// Adds a base to a mesh with an area of 10.
 void addBase(Surface& result, double area, bool is_filled) {
   result.measures.area = 10.0;
   Opening opening = filledOpening(61);
@@ -140,17 +140,20 @@ TEST(Findings, AnOpenBaseNamesTheOptionThatClosesIt) {
                   // What one place sees has an opening as large as itself.
                   {{}, [](Surface& r) { addBase(r, 4.0, false); }}});
   expectFindings({{{}, [](Surface& r) { addBase(r, 3.0, false); }}}, given("surface", "open"));
-  // Who closes it knows.
+  // Filled on request it is no finding, unless it is as large as the mesh.
   expectFindings({{{}, [](Surface& r) { addBase(r, 3.0, true); }},
                   {{"opening of 61 points, filled", "surface", "open", true},
                    [](Surface& r) { addBase(r, 4.0, true); }}},
                  given("surface", "closed"));
 }
 
-TEST(Findings, AHandleThatAnOptionCutsNamesThatOption) {
+TEST(Findings, OptionsDecideWhatIsAFault) {
   expectFindings({{{"1 handle, cut: the mesh is a sphere", "handles", "auto", true},
                    [](Surface& r) { r.diagnosis.cut_handles = 1; }}},
                  given("handles", "none"));
+  expectFindings(
+      {{{"opening of 432 points, filled"}, [](Surface& r) { r.openings = {filledOpening(432)}; }}},
+      given("surface", "open", "fill_holes", 500));
 }
 
 TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
@@ -174,7 +177,7 @@ TEST(Findings, AFaultWithoutAnOptionBesideOneThatHasOneIsAConsequence) {
   EXPECT_TRUE(findings[1].is_consequence);
 }
 
-TEST(Findings, OfSeveralPartsAreSaidOnceAKindByTheLargest) {
+TEST(Findings, OfSeveralPartsAreReportedOnceAKindByTheLargest) {
   const auto of_kind = [](const char* kind, double size, Finding finding) {
     finding.kind = kind;
     finding.size = size;
@@ -222,12 +225,6 @@ TEST(LeftOut, SaysWhatAndHowMany) {
   left_out.other_parts.resize(1000);
   EXPECT_EQ(left_out.text(),
             "2 points that are not finite, 1 stray point, 1,000 points in other parts");
-}
-
-TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
-  expectFindings(
-      {{{"opening of 432 points, filled"}, [](Surface& r) { r.openings = {filledOpening(432)}; }}},
-      given("surface", "open", "fill_holes", 500));
 }
 
 TEST(Findings, ThePapersMethodHasItsOwn) {

@@ -5,36 +5,17 @@
 namespace spherical_param::test {
 namespace {
 
-TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
+TEST(Judgement, ThePapersMethodMeshesWhatIsNoSphereAsOneAndReportsIt) {
   const Positions torus = torusCloud(40, 20, 1.0, 0.5);
   const Positions bowl = spiralSphere(1500).rightCols(1100);  // without its top
-  const Positions parts = twoSpheres(200, 160, 6.0);
-  for (Options options : bothMethods()) {
-    options.handles = HandleMode::None;
-    options.paper.k = 10;
-    const Surface of_torus = mesh(torus, options);
-    EXPECT_EQ(of_torus.genus(), 0U);
-    EXPECT_GT(of_torus.diagnosis.edges_outside_graph, 0.01);
-    options.paper.k = 25;
-    const Surface of_bowl = mesh(bowl, options);
-    // The graph of nearest neighbours shows no openings.
-    const bool shows_openings = options.method == Method::Default;
-    EXPECT_EQ(of_bowl.filledOpenings(), shows_openings ? 1U : 0U);
-    EXPECT_GT(of_bowl.diagnosis.edges_outside_graph, 0.001);
-    const Surface of_parts = mesh(parts, options);
-    EXPECT_EQ(of_parts.diagnosis.joined_parts, 2U);
-    EXPECT_TRUE(isFound(of_parts, "2 separate parts (160 and 200 points)"));
-    ASSERT_EQ(of_parts.diagnosis.bridges.size(), 1U);
-    EXPECT_EQ(of_parts.diagnosis.bridges[0].points, 160U);
-    for (const Index v : of_parts.diagnosis.bridges[0].vertices)
-      EXPECT_LT(std::abs(parts(0, v) - 3.0), 3.0);  // the ends look at each other
-    for (const auto& [points, result] :
-         {std::pair(torus, of_torus), {bowl, of_bowl}, {parts, of_parts}}) {
-      expectGuarantees(points, result);
-      const bool is_reported = shows_openings || points.cols() != bowl.cols();
-      EXPECT_TRUE(hasFault(result.findings));
-      EXPECT_TRUE(is_reported || isFound(result, "folded"));
-    }
+  for (const auto& [points, k, finding] :
+       {std::tuple(torus, 10, "the mesh is folded"),
+        {bowl, 25, "the mesh is folded"},
+        {twoSpheres(200, 160, 6.0), 25, "2 separate parts (160 and 200 points)"}}) {
+    const Surface result = mesh(points, given(paper(), "k", k));
+    expectGuarantees(points, result);
+    EXPECT_TRUE(isFound(result, finding));
+    EXPECT_TRUE(hasFault(result.findings));
   }
 }
 
@@ -77,20 +58,33 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
 }
 
 TEST(Judgement, MarksAreThoseOfTheFindings) {
+  const auto marked = [](const Surface& surface, std::uint8_t bit) {
+    std::set<Index> triangles;
+    const std::vector<std::uint8_t>& marks = surface.diagnosis.triangle_marks;
+    EXPECT_EQ(marks.size(), columnCount(surface.triangles));
+    for (std::size_t t = 0; t < marks.size(); ++t)
+      if (marks[t] & bit)
+        triangles.insert(static_cast<Index>(t));
+    return triangles;
+  };
   const Surface tangled =
       mesh(noisySphere(300, 1.0), watched(quick(given("consolidation", "none"))));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
   EXPECT_FALSE(intersecting.empty());
-  std::set<Index> marked;
-  for (const Index t : indicesOf(tangled.diagnosis.triangle_marks))
-    if (tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
-        triangle_mark::self_intersection)
-      marked.insert(t);
-  EXPECT_EQ(marked, intersecting);
-  EXPECT_EQ(mesh(ellipsoid(300), watched()).diagnosis.triangle_marks,
-            std::vector<std::uint8_t>(2 * 300 - 4, 0));
+  EXPECT_EQ(marked(tangled, triangle_mark::self_intersection), intersecting);
+  for (const char* fill : {"flat", "smooth"}) {
+    const Surface filled =
+        mesh(sphereWithHoles(3000, 1, 0.4), watched(given("surface", "closed", "fill", fill)));
+    const std::vector<Index>& over = filled.openings.at(0).triangles;
+    EXPECT_EQ(marked(filled, triangle_mark::filled_hole),
+              std::set<Index>(over.begin(), over.end()));
+  }
+  const Surface uncertain = surfaceOf(sphereWithHoles(3000, 1, 0.15), watched());
+  EXPECT_TRUE(uncertain.openings.at(0).is_filled);
+  EXPECT_TRUE(marked(uncertain, triangle_mark::filled_hole).empty());
+  EXPECT_TRUE(marked(mesh(ellipsoid(300), watched()), 0xff).empty());
 }
 
 TEST(Judgement, SmoothingMovesThePointsAlone) {

@@ -2,7 +2,6 @@
 
 #include "graphs.h"
 #include "handle_shapes.h"
-#include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
@@ -18,13 +17,6 @@ struct Scene {
 /// A star-shaped cloud and its mesh: the convex hull of the directions.
 Scene starShaped(const Positions& directions, const Positions& points) {
   return {points, triangulateSphere(directions), localDelaunayGraph(points)};
-}
-
-/// A sphere without the cap beyond x = height.
-Scene openSphere(Index n, double height) {
-  const Positions open =
-      pointsWhere(spiralSphere(n), [&](const Eigen::Vector3d& p) { return p.x() < height; });
-  return starShaped(open, open);
 }
 
 /// Two spheres, joined by a tube of six triangles.
@@ -56,13 +48,9 @@ Scene folded(Scene scene) {
   return scene;
 }
 
-/// The openings of the graph are filled.
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
-  std::vector<Opening> openings = openingsOf(scene.points, scene.graph.graph).openings;
-  for (Opening& opening : openings)
-    opening.is_filled = true;
   return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph, scene.graph.bridges,
-                         openings, options, 1);
+                         options, 1);
 }
 
 TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
@@ -96,43 +84,21 @@ TEST(SurfaceDiagnosis, OneSideNeedsAMeshThatIsTornWhereItTurnsOver) {
   DiagnosisOptions options;
   const auto is_one_sided = [&](const Positions& points, const Triangles& triangles) {
     const NeighborGraph graph = localDelaunayGraph(points);
-    return diagnoseSurface(points, triangles, graph.graph, {}, {}, options, 1).is_one_sided;
+    return diagnoseSurface(points, triangles, graph.graph, {}, options, 1).is_one_sided;
   };
   EXPECT_FALSE(is_one_sided(band, torn));
   options.may_be_one_sided = true;
   EXPECT_TRUE(is_one_sided(band, torn));
-  // The two sides of a thin plate, and a rim, are on no one sheet.
+  // The two sides of a thin plate are two sheets.
   const Positions plate = Eigen::Vector3d(1.0, 1.0, 0.05).asDiagonal() * spiralSphere(1200);
   EXPECT_FALSE(is_one_sided(plate, triangulateSphere(spiralSphere(1200))));
-}
-
-TEST(SurfaceDiagnosis, FilledOpeningsAreMarkedIfTheyAreCertain) {
-  const Scene scene = openSphere(1000, 2.0);
-  DiagnosisOptions options;
-  options.mark_triangles = true;
-  for (const double certainty : {0.9, 1.0})
-    for (const bool is_flat : {false, true})
-      for (const bool is_filled : {false, true}) {
-        Opening opening;
-        opening.certainty = certainty;
-        opening.is_flat = is_flat;
-        opening.is_filled = is_filled;
-        if (is_filled)
-          opening.triangles = {3, 5};
-        const SurfaceDiagnosis diagnosis = diagnoseSurface(
-            scene.points, scene.triangles, scene.graph.graph, {}, {opening}, options, 1);
-        const bool is_fault = is_filled && opening.isCertain();
-        ASSERT_EQ(diagnosis.triangle_marks.size(), columnCount(scene.triangles));
-        for (std::size_t t = 0; t < diagnosis.triangle_marks.size(); ++t)
-          EXPECT_EQ(diagnosis.triangle_marks[t],
-                    is_fault && (t == 3 || t == 5) ? triangle_mark::filled_hole : 0);
-      }
 }
 
 TEST(SurfaceDiagnosis, EdgesOutsideTheGraphAreCounted) {
   // The tube between two spheres is too small for a fold.
   for (const auto& [scene, is_folded] :
-       {std::pair(joinedSpheres(60, 40, 3.5), false), {folded(openSphere(1000, 2.0)), true}}) {
+       {std::pair(joinedSpheres(60, 40, 3.5), false),
+        {folded(starShaped(spiralSphere(1000), spiralSphere(1000))), true}}) {
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_GT(diagnosis.edges_outside_graph, is_folded ? 0.5 : 0.0);
     EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,

@@ -72,14 +72,10 @@ TEST(DepthJumps, GapsAreFilledUpToASize) {
   SphereMesh mesh = opened(points, view);
   EXPECT_TRUE(fillGaps(points, spacing, view, {8}, mesh).empty());
   EXPECT_EQ(topologyOf(mesh, points).boundary_loops, 2U);
-  SphereMesh by_area = mesh;
   const std::vector<Gap> filled = fillGaps(points, spacing, view, {8, 100}, mesh);
   ASSERT_EQ(filled.size(), 1U);
   EXPECT_EQ(filled[0].triangles.size(), filled[0].loop.size() - 2);
-  EXPECT_NEAR(filled[0].area,
-              surfaceArea(points, mesh.triangles()(Eigen::all, filled[0].triangles)), 1e-9);
   EXPECT_EQ(topologyOf(mesh, points).boundary_loops, 1U);
-  EXPECT_EQ(fillGaps(points, spacing, view, {0, 0, 1.01 * filled[0].area}, by_area).size(), 1U);
 }
 
 }  // namespace
