@@ -94,12 +94,6 @@ struct EmbeddingOptions {
   /// Number of starts of Method::Default on the coarsest level; the start of least energy is kept;
   /// [1, 100].
   int starts = 2;
-  /// Maximum number of nodes whose paths are recorded to show how the embedding unfolds; 0: none;
-  /// [0, 2^24]. Costs the memory of the states and, with Method::Default, the time of a start.
-  Index history_vertices = 0;
-  /// Maximum number of states of these paths; [2, 10000]. Surplus states between the first and the
-  /// last are dropped.
-  int history_frames = 40;
 };
 
 /// Whether openings of the sampled surface are filled.

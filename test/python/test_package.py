@@ -55,7 +55,7 @@ class Documentation(unittest.TestCase):
             self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
         stub = ast.parse((Path(sp.__file__).parent / "_figures.pyi").read_text())
         classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
-        for name in ("Topology", "Diagnosis", "Embedding", "HistoryFrame"):
+        for name in ("Topology", "Diagnosis", "Embedding", "Opening"):
             names = [node.target.id for node in classes[name].body]
             made = getattr(sp, name)
             self.assertEqual(names, [field.name for field in dataclasses.fields(made)])

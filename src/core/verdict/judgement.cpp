@@ -71,7 +71,6 @@ Surface judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh
           graph.graph, mesh.embedding.directions,
           options.method == Method::Paper ? options.paper.weights : EdgeWeights::Adaptive);
     result.sphere = std::move(mesh.embedding.directions);
-    result.history = std::move(mesh.embedding.history);
   }
   result.embedding = std::move(mesh.embedding.report);
   // A grid makes steps.
