@@ -5,7 +5,7 @@
 
 Captions and views are given once for each file, in order; the last view holds for the files that follow. The
 projection is orthographic. A value that begins with a minus sign is written --view=-30,10. Needs the Debian packages
-python3-numpy and python3-matplotlib, which brings python3-pil.
+python3-meshio and python3-matplotlib, which brings python3-pil.
 """
 
 import argparse
@@ -13,16 +13,13 @@ import os
 import pathlib
 
 import matplotlib
+import meshio
 import numpy as np
 from PIL import Image
 
 matplotlib.use("Agg")
 from matplotlib import collections, pyplot  # noqa: E402  the backend has to be chosen first
 
-TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
-         "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
-         "float32": "f4", "float64": "f8"}  # fmt: skip
-ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 # Drawn this many times larger, without antialiasing, and reduced at the end: triangles that are antialiased one by one
 # show seams.
 SCALE = 3
@@ -31,31 +28,13 @@ BACK = (0.95, 0.62, 0.42)  # the colour of triangles seen from behind, with --ba
 
 def read_ply(path):
     """Points (n, 3), colours (n, 3) in [0, 1] or None, and triangles (m, 3)."""
-    head, body = pathlib.Path(path).read_bytes().split(b"end_header\n", 1)
-    lines = [line.split() for line in head.decode().splitlines()]
-    order = next(ORDERS[words[1]] for words in lines if words[0] == "format")
-    if not order:  # Text becomes an array of doubles, which is then read like a binary file.
-        body = np.array(body.split(), float).tobytes()
-    elements = {}
-    for words in lines:
-        if words[0] == "element":
-            count, fields = int(words[2]), []
-            elements[words[1]] = count, fields
-        elif words[0] == "property":
-            *types, name = [order + TYPES[word] if order else "f8" for word in words[1:-1] if word != "list"] + words[-1:]
-            fields += [("corners", types[0]), (name, types[1], 3)] if words[1] == "list" else [(name, types[0])]
-    count, fields = elements["vertex"]
-    vertex = np.frombuffer(body, fields, count)
-    points, colors = np.stack([vertex[axis] for axis in "xyz"], axis=1).astype(float), None
-    if "red" in vertex.dtype.names:
-        colors = np.stack([vertex[name] for name in ("red", "green", "blue")], axis=1) / 255.0
-    count, fields = elements.get("face", (0, []))
-    if count == 0:
-        return points, colors, np.empty((0, 3), np.int64)
-    face = np.frombuffer(body, fields, count, vertex.nbytes)
-    if (face["corners"] != 3).any():
+    mesh = meshio.read(path, "ply")
+    faces, colors = mesh.cells_dict, None
+    if set(faces) - {"triangle"}:
         raise ValueError(f"{path}: not all faces are triangles")
-    return points, colors, face[fields[1][0]].astype(np.int64)
+    if "red" in mesh.point_data:
+        colors = np.stack([mesh.point_data[name] for name in ("red", "green", "blue")], axis=1) / 255.0
+    return mesh.points.astype(float), colors, faces.get("triangle", np.empty((0, 3))).astype(np.int64)
 
 
 def direction_colors(points):
