@@ -182,7 +182,7 @@ class ReportPage(unittest.TestCase):
         self.open(OPEN)
         self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening; 2 stray points left out.")
         self.assertIn("opening", self.text("warnings"))
-        self.assertIn("stray point", self.text("cloud-note"))
+        self.assertIn("2 points left out", self.text("cloud-note"))
 
     def test_each_view_shows_its_object(self):
         for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera"),
