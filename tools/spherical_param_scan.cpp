@@ -42,9 +42,7 @@ struct Settings {
 };
 
 OptionTable optionsOf(Settings& settings) {
-  return {numberOption("points",
-                       "number of points",
-                       settings.scan.points, 4, kMaxScanPoints),
+  return {numberOption("points", "number of points", settings.scan.points, 4, kMaxScanPoints),
           numberOption("noise",
                        "noise along the normal or the ray, relative to the distance of neighbours",
                        settings.scan.noise, 0, 100),
