@@ -58,7 +58,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// An element that holds bytes deflated and in base64, which no text of theirs can end.
+/// An element that holds bytes, deflated and in base64. None of the bytes can close the element.
 std::string element(const std::string& id, std::string_view bytes) {
   return "<script type=\"text/plain\" id=\"" + id + "\">" + base64(deflated(bytes)) + "</script>\n";
 }
@@ -163,8 +163,8 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   }
 }
 
-/// The rigid motion that brings the points of the sphere about to where those of the object are, by
-/// rows; null without a sphere.
+/// The rigid motion that best fits the points of the sphere to those of the object, row by row;
+/// null without a sphere.
 Json sphereTurn(const ReportMesh& mesh) {
   if (mesh.sphere.cols() == 0) {
     return nullptr;
@@ -173,7 +173,7 @@ Json sphereTurn(const ReportMesh& mesh) {
   return std::vector<double>(turn.data(), turn.data() + turn.size());
 }
 
-/// What the cloud has beside the mesh: colours, the points before smoothing.
+/// Adds the colours of the cloud, and its points if those of the mesh have moved.
 void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh& mesh,
               Arrays& arrays) {
   if (!cloud.data->colors.empty()) {
@@ -205,7 +205,7 @@ std::size_t addLeftOut(const CloudReconstruction& cloud, const ReportMesh& mesh,
       shown[i] = left_out[i * left_out.size() / shown.size()];
     }
     const Positions points = positionsOf(*cloud.data)(Eigen::all, shown);
-    // One far off comes to the side of a box around the mesh, where it can be seen.
+    // Points outside of a box around the mesh are drawn on its sides, where they can be seen.
     const Eigen::AlignedBox3d box = boxOf(mesh.positions);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
     arrays.addPoints("left_out", points, {box.min() - margin, box.max() + margin});
