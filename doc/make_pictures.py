@@ -3,8 +3,8 @@
 
     doc/make_pictures.py [NAME...]       default: all of them
 
-Needs python3-pil and the tools of build/release, or of the folder in the environment variable TOOLS. The pictures
-are reduced to 256 colours, to stay small. .github/texture.png and .github/report.png are screenshots.
+Needs the tools of build/release, or of the folder in the environment variable TOOLS. .github/texture.png and
+.github/report.png are screenshots.
 """
 
 import json
@@ -19,6 +19,9 @@ import numpy as np
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+import draw as drawing  # noqa: E402
+
 TOOLS = pathlib.Path(os.environ.get("TOOLS", ROOT / "build" / "release" / "bin")).resolve()
 PICTURES = ROOT / "doc" / "pictures"
 GITHUB = ROOT / ".github"
@@ -55,19 +58,13 @@ def mesh(cloud, name, *options):
 def draw(path, size, views, *options):
     """Draws files with their captions."""
     words = [str(file) for file, _ in views] + [f"--caption={caption}" for _, caption in views]
-    subprocess.run([ROOT / "tools" / "draw.py", path, *words, f"--size={size}", *options], check=True)
-    save(path, Image.open(path).convert("RGB"))
-
-
-def save(path, picture):
-    # Without dithering a smooth change of colours becomes patches.
-    picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+    drawing.main([str(path), *words, f"--size={size}", *options])
     print(f"{path}: {os.path.getsize(path) // 1024} KB", flush=True)
 
 
 def beside(path, *pictures):
     """Puts pictures of the same height side by side."""
-    save(path, Image.fromarray(np.hstack([Image.open(picture).convert("RGB") for picture in pictures])))
+    drawing.save(path, Image.fromarray(np.hstack([Image.open(picture).convert("RGB") for picture in pictures])))
 
 
 def demo():
@@ -166,7 +163,7 @@ def depth_camera():
 
 
 def scans():
-    shapes = ["head", "bird", "hand", "animal", "dumbbell", "star", "snake", "plate", "torus", "bowl"]
+    shapes = ["head", "bird", "hand", "animal", "holed", "torus", "chair", "bowl"]
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 

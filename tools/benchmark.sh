@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Measures: the paper's tables and figures, quality against truth, other methods on the same clouds,
+# Measures: tables and figures of the paper, quality against truth, other methods on the same clouds,
 # time and memory over the number of points. Installs missing packages, builds, and writes tables,
-# plots, pictures and report.md to a folder.
+# pictures and report.md to a folder.
 #
 #   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
 #                      [--only clean|paper|comparison|maps|scaling|gallery]
-#                      [--clean DIR]... [--clean-list FILE] [--update-clean]
+#                      [--clean DIR... --clean-list FILE [--update-clean]]
 #
 #   OUT           folder for the report
 #   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply;
@@ -14,8 +14,8 @@
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
 #   --update-doc  also put the tables into README.md and doc, and the pictures into doc/gallery
-#   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list
-#                 test/benchmark/clean.txt (or FILE) names must be meshed as cleanly as before
+#   --clean       folder of your own clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the
+#                 list FILE names must be meshed as cleanly as when it was written
 #   --update-clean  mesh all clouds of these folders, and put the clean ones into the list
 set -euo pipefail
 

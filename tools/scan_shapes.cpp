@@ -120,18 +120,6 @@ Distance body(const std::vector<Part>& middle, const std::vector<Part>& sides = 
   };
 }
 
-/// The twelve vertices of an icosahedron: cyclic permutations of (0, +-1, +-golden ratio).
-Distance star() {
-  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
-  const Vector3d origin = Vector3d::Zero();
-  std::vector<Part> parts = {{ball(origin, 0.16)}};
-  for (const double a : {-1.0, 1.0})
-    for (const double b : {-golden, golden})
-      for (const Vector3d& tip : {Vector3d(0.0, a, b), Vector3d(b, 0.0, a), Vector3d(a, b, 0.0)})
-        parts.push_back({cone(origin, 0.14, 0.53 * tip.normalized(), 0.013), 0.03});
-  return body(parts);
-}
-
 const Shape& findShape(const std::string& name) {
   for (const Shape& shape : allShapes())
     if (shape.name == name)
@@ -210,7 +198,6 @@ const std::vector<Shape>& allShapes() {
   const Distance skin = bumps({0.0, 0.0, -0.05}, 0.60, 0.080, 0.005);
   static const std::vector<Shape> shapes = {
       {"sphere", "a sphere", ball(origin, 0.5)},
-      {"ellipsoid", "an ellipsoid with three axes", ellipsoid(origin, {0.5, 0.32, 0.22})},
       {"head", "a head with a face, ears and bumpy hair",
        [=](const Vector3d& p) { return head(p) - hair(p) - skin(p); }},
       {"bird", "a bird, its tail folded back",
@@ -256,29 +243,10 @@ const std::vector<Shape>& allShapes() {
              {cone({-0.24, 0.080, -0.02}, 0.085, {-0.21, 0.095, -0.22}, 0.048), 0.04},  // hind leg
              {cone({-0.21, 0.095, -0.22}, 0.048, {-0.25, 0.095, -0.40}, 0.036), 0.01},
              {cone({-0.25, 0.095, -0.40}, 0.040, {-0.21, 0.095, -0.41}, 0.032), 0.01}})},
-      {"dumbbell", "two balls and a thin neck",
-       body({{ball(-0.3 * x, 0.2)},
-             {ball(0.3 * x, 0.2)},
-             {cone(-0.3 * x, 0.03, 0.3 * x, 0.03), 0.04}})},
-      {"star", "a ball with twelve sharp spikes", star()},
-      {"snake", "a coiled snake, its head raised",
-       body({{cone({0.035, 0.0, -0.14}, 0.052, {0.035, -0.07, -0.14}, 0.020)},
-             {arc({-0.08, 0.0, -0.14}, y, x, 0.115, 0.052, quarter)},
-             {arc({0.015, 0.0, -0.14}, -y, x, 0.21, 0.052, quarter)},
-             {arc({-0.08, 0.0, -0.14}, y, x, 0.305, 0.052, quarter)},
-             {arc({0.015, 0.0, -0.14}, -y, x, 0.40, 0.052, quarter)},
-             {arc({0.415, 0.0, -0.04}, y - z, y + z, 0.10, 0.052, quarter / 2.0)},
-             {cone({0.415, 0.10, -0.04}, 0.052, {0.415, 0.10, 0.14}, 0.052)},
-             {arc({0.315, 0.10, 0.14}, x + z, x - z, 0.10, 0.052, quarter / 2.0)},
-             {ellipsoid({0.255, 0.10, 0.23}, {0.12, 0.085, 0.058}), 0.03}})},
-      {"plate", "a flat plate", box(origin, {0.5, 0.35, 0.045}, 0.04)},
       {"torus", "a torus (genus 1)", arc(origin, x, y, 0.36, 0.14, 2.0 * quarter)},
       {"bowl", "a shell without its lid (open)", ball(origin, 0.5),
        [](const Vector3d& p) { return 0.15 - p.z(); }},
       {"pair", "two spheres (two pieces)", body({{ball(-0.3 * x, 0.2)}, {ball(0.3 * x, 0.2)}})},
-      {"double_torus", "two tori grown together (genus 2)",
-       body({{arc(0.23 * x, x, y, 0.19, 0.08, 2.0 * quarter)},
-             {arc(-0.23 * x, x, y, 0.19, 0.08, 2.0 * quarter), 0.04}})},
       {"chair", "a chair of tubes (genus 4)",
        body({{box(origin, {0.21, 0.21, 0.035}, 0.03)},                               // seat
              {cone({-0.21, -0.17, 0.45}, 0.035, {-0.21, 0.17, 0.45}, 0.034), 0.02},  // back

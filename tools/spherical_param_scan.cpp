@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,7 +24,7 @@ ToolText toolText() {
   return {"pcl_spherical_param_scan",
           "SHAPE output",
           "Writes points that are spread evenly over a generated surface, or a depth image.\n"
-          "  SHAPE:  a shape, scene or preset, see -list\n  output: " +
+          "  SHAPE:  a shape or scene, see -list\n  output: " +
               extensionsFor(FileUse::WriteCloud) + "\n",
           {{"A scan of a hand to try the other tools on", "hand scan.ply"},
            {"A noisy one of another size, and the surface that it comes from",
@@ -44,24 +42,18 @@ struct Settings {
 };
 
 OptionTable optionsOf(Settings& settings) {
-  return {numberOption("points",
-                       "number of points; if not given, that of a preset or of a depth image",
-                       settings.scan.points, 4, kMaxScanPoints),
+  return {numberOption("points", "number of points", settings.scan.points, 4, kMaxScanPoints),
           numberOption("noise",
                        "noise along the normal or the ray, relative to the distance of neighbours",
                        settings.scan.noise, 0, 100),
           numberOption("seed", "seed of the random placement", settings.scan.seed, 0, 1e15),
           flagOption("normals", "write the normals of the surface, too", settings.normals),
           fileOption("truth", "write a fine mesh of the surface", settings.truth),
-          flagOption("list", "list the shapes and presets", settings.list)};
+          flagOption("list", "list the shapes", settings.list)};
 }
 
 /// Of the depth image, unless the command line says it: 320 x 240.
 constexpr std::size_t kDepthPoints = 76800;
-
-/// Of the paper's scans: the shape that stands for each, and its points in Table 1.
-const std::map<std::string, std::pair<std::string, std::size_t>> presets = {
-    {"tweety", {"bird", 19818}}, {"max", {"head", 52809}}, {"igea", {"head", 134345}}};
 
 std::string listText() {
   const auto line = [](const std::string& name, const std::string& text) {
@@ -70,12 +62,7 @@ std::string listText() {
   std::string text = "Shapes:\n";
   for (const Shape& shape : allShapes())
     text += line(shape.name, shape.description);
-  text += "Scene:\n" + line(deskScene().name, deskScene().description);
-  text += "Presets:\n";
-  for (const auto& [name, preset] : presets)
-    text += line(name, "the shape " + preset.first + " in place of the paper's scan (" +
-                           std::to_string(preset.second) + " points)");
-  return text;
+  return text + "Scene:\n" + line(deskScene().name, deskScene().description);
 }
 
 /// Shape and output, in either order.
@@ -92,8 +79,6 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
 void parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
   ScanOptions& scan = settings.scan;
   scan.shape = lowerCase(name);
-  if (const auto preset = presets.find(scan.shape); preset != presets.end())
-    std::tie(scan.shape, scan.points) = preset->second;
   if (scan.shape == deskScene().name)
     scan.points = kDepthPoints;
   else if (std::none_of(allShapes().begin(), allShapes().end(),

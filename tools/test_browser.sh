@@ -19,8 +19,8 @@ make_reports() {
       "${tool}_scan" sphere ball.xyz -points 3000 &&
       awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz >seen.xyz &&
       "${tool}_reconstruction" seen.xyz mesh.ply -report camera.html &&
-      "${tool}_scan" double_torus double.xyz -points 3000 &&
-      "${tool}_reconstruction" double.xyz mesh.ply -report handles.html &&
+      "${tool}_scan" torus torus.xyz -points 3000 &&
+      "${tool}_reconstruction" torus.xyz mesh.ply -report handles.html &&
       "${tool}_scan" pair pair.xyz -points 3000 &&
       "${tool}_reconstruction" pair.xyz mesh.ply -report pair.html
   )

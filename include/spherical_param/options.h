@@ -91,12 +91,6 @@ struct EmbeddingOptions {
   /// Mean length of the tangential Laplacian at which the embedding counts as converged [radius of
   /// the sphere]; [0, 1]. Unset: 1e-8 for Method::Paper; Method::Default then ends with its sweeps.
   std::optional<double> tolerance;
-  /// Maximum number of nodes whose paths are recorded to show how the embedding unfolds; 0: none;
-  /// [0, 2^24]. Costs the memory of the states and, with Method::Default, the time of a start.
-  Index history_vertices = 0;
-  /// Maximum number of states of these paths; [2, 10000]. Surplus states between the first and the
-  /// last are dropped.
-  int history_frames = 40;
 };
 
 /// Whether openings of the sampled surface are filled.

@@ -178,31 +178,6 @@ struct EmbeddingReport {
   bool converged() const { return stop_reason == StopReason::Converged; }
 };
 
-/// The work that led to a state of an embedding.
-enum class EmbeddingStep {
-  Start,      ///< none on this level: the first start, or the interpolated coarser level
-  Sweeps,     ///< the smoothing sweeps of a level
-  Newton,     ///< a step of Newton's method; 0 is the state before the first
-  Iteration,  ///< a step of the paper's iteration; 0 is the state before the first
-  End,        ///< none: the returned embedding
-};
-
-/// One state of an embedding.
-struct HistoryFrame {
-  std::size_t level = 0;                      ///< 0 is the graph itself, 1 the next coarser level
-  std::size_t nodes = 0;                      ///< of that level
-  EmbeddingStep step = EmbeddingStep::Start;  ///< the work before it
-  int iteration = 0;                          ///< number of these steps on this level so far
-  std::optional<double> residual;             ///< mean tangential Laplacian, if known [radius]
-  Positions sphere;  ///< 3 x EmbeddingHistory::vertices.size(), unit vectors
-};
-
-/// How an embedding unfolded, for some of its vertices.
-struct EmbeddingHistory {
-  std::vector<Index> vertices;       ///< the recorded vertices
-  std::vector<HistoryFrame> frames;  ///< in the order of the work; the last is the embedding
-};
-
 /// Distance of a smoothed surface from the given one.
 struct SmoothingReport {
   double max_displacement = 0.0;   ///< of a point [unit of the input]
@@ -236,8 +211,8 @@ struct Surface {
   /// Openings found in the surface, open or filled.
   std::vector<Opening> openings;
   /// 3 x v, unit vectors: the embedding of each vertex. A view has it, and the published method;
-  /// others with TopologyMode::Sphere, a tolerance, a history or Options::details. Empty if the
-  /// mesh has handles, added vertices, or only triangles that are certain.
+  /// others with TopologyMode::Sphere, a tolerance or Options::details. Empty if the mesh has
+  /// handles, added vertices, or only triangles that are certain.
   Positions sphere;
 
   std::vector<Index> inputs;           ///< n entries: the input points of the surface, ascending
@@ -250,8 +225,6 @@ struct Surface {
   std::vector<std::array<Index, 2>> self_intersections;
   std::size_t added_vertices = 0;   ///< in filled openings, by FillMode::Smooth; they come last
   std::size_t smoothly_filled = 0;  ///< openings that have them
-  /// How the embedding unfolded to `sphere`; empty without EmbeddingOptions::history_vertices.
-  EmbeddingHistory history;
   /// v entries: length of the tangential Laplacian of `sphere` [radius]; empty without
   /// Options::details or `sphere`.
   std::vector<double> vertex_residuals;

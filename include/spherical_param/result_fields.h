@@ -56,10 +56,6 @@ constexpr std::array<const char*, 5> namesOf(StopReason) {
 constexpr std::array<const char*, 3> namesOf(EmbeddingBarrier) {
   return {"none", "coarse_levels", "everywhere"};
 }
-/// \copydoc namesOf(FacedBy)
-constexpr std::array<const char*, 5> namesOf(EmbeddingStep) {
-  return {"start", "sweeps", "newton", "iteration", "end"};
-}
 
 /// The name of one value.
 ///
@@ -249,25 +245,6 @@ constexpr ResultField visitFields(const EmbeddingReport*, const Visit& visit) {
 }
 
 template <typename Visit>
-constexpr ResultField visitFields(const HistoryFrame*, const Visit& visit) {
-  visit({"level", "0 is the graph itself, 1 the next coarser level"}, &HistoryFrame::level);
-  visit({"nodes", "of that level"}, &HistoryFrame::nodes);
-  visit({"step", "the work before it"}, &HistoryFrame::step);
-  visit({"iteration", "number of these steps on this level so far"}, &HistoryFrame::iteration);
-  visit({"residual", "mean tangential Laplacian, if known [radius]"}, &HistoryFrame::residual);
-  visit({"sphere", "unit vectors, of the vertices of the history"}, &HistoryFrame::sphere);
-  return {"HistoryFrame", "One state of the embedding."};
-}
-
-template <typename Visit>
-constexpr ResultField visitFields(const EmbeddingHistory*, const Visit& visit) {
-  using Of = EmbeddingHistory;
-  visit({"vertices", "the recorded vertices", 0, FieldKind::VertexList}, &Of::vertices);
-  visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
-  return {"History", "How the embedding unfolded, for some of the vertices."};
-}
-
-template <typename Visit>
 constexpr ResultField visitFields(const SmoothingReport*, const Visit& visit) {
   using Of = SmoothingReport;
   visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
@@ -334,8 +311,6 @@ constexpr ResultField visitFields(const Surface*, const Visit& visit) {
   visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
          FieldKind::PerVertex},
         unlessEmpty(&Of::vertex_residuals));
-  visit({"history", "how the embedding unfolded", 0, FieldKind::PerVertex},
-        [](auto& s) { return s.history.frames.empty() ? nullptr : &s.history; });
   visit({"inputs", "the input points of the surface, ascending", 0, FieldKind::PerInput},
         &Of::inputs);
   visit({"vertex_of_input", "vertex of each of them", 0, FieldKind::PerInput},

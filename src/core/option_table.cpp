@@ -230,11 +230,6 @@ std::vector<OptionRow> methodRows() {
       number("embedding.tolerance",
              "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert,
              0, 1, &Options::embedding, &EmbeddingOptions::tolerance),
-      number("embedding.history_vertices",
-             "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
-             &Options::embedding, &EmbeddingOptions::history_vertices),
-      number("embedding.history_frames", "maximum number of states of these paths", Expert, 2,
-             10000, &Options::embedding, &EmbeddingOptions::history_frames),
       number("smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000, &Options::smoothing),
   };
 }

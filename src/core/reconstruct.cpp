@@ -3,7 +3,6 @@
 #include "attempts.h"
 #include "cloud_surfaces.h"
 #include "consolidation.h"
-#include "embedding_history.h"
 #include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
@@ -84,11 +83,9 @@ PartMesh meshAsPublished(const Positions& points, const Graph& graph, const Opti
   constexpr double typical_tolerance = 1e-8;
   PartMesh mesh;
   clock.begin("embedding");
-  EmbeddingRecorder recorder(graph.size(), options.embedding);
-  mesh.embedding = paper::embed(graph, points, options.paper,
-                                options.embedding.tolerance.value_or(typical_tolerance), recorder,
-                                clock.execution());
-  mesh.embedding.history = recorder.take();
+  mesh.embedding =
+      paper::embed(graph, points, options.paper,
+                   options.embedding.tolerance.value_or(typical_tolerance), clock.execution());
   clock.begin("triangulation");
   mesh.mesh = SphereMesh(paper::convexHull(mesh.embedding.directions, clock.execution()),
                          graph.size(), clock.execution().threads);

@@ -71,10 +71,8 @@ inline Options quick(Options options = {}) {
   return options;
 }
 
-/// Keeps a history and the details.
+/// With the details.
 inline Options watched(Options options = {}) {
-  options.embedding.history_vertices = 300;
-  options.embedding.history_frames = 25;
   options.details = true;
   return options;
 }

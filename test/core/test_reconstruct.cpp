@@ -100,7 +100,7 @@ TEST(Reconstruct, ACollapseOfThePapersEmbeddingIsReportedUnlessCentringUndoesIt)
   EXPECT_LT(centred.embedding.centroid_norm, 0.1);
 }
 
-TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
+TEST(Reconstruct, MirroredCloudIsOrientedOutward) {
   Positions mirrored = ellipsoid(600);
   mirrored.row(0) *= -1.0;
   const Options collapsing = given(paper(), "weights", "uniform", "max_iterations", 20000, "k", 3);
@@ -111,12 +111,6 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
       expectGuarantees(points, result);
       EXPECT_GT(result.measures.volume, 1.0);
       EXPECT_GT(volumeOf(result.sphere, result.triangles), 3.5);
-      const EmbeddingHistory& history = result.history;
-      ASSERT_TRUE(history.vertices.size() > 100U && history.vertices.size() <= 300U);
-      ASSERT_TRUE(!history.frames.empty() && history.frames.size() <= 25U);
-      EXPECT_EQ(history.frames.back().step, EmbeddingStep::End);
-      EXPECT_EQ(history.frames.back().residual, result.embedding.residual);
-      EXPECT_EQ(history.frames.back().sphere, result.sphere(Eigen::all, history.vertices));
     }
 }
 
@@ -128,7 +122,6 @@ TEST(Reconstruct, AskingForDetailsChangesNoBit) {
     options.paper.max_iterations = 40;
     options.smoothing = options.method == Method::Paper ? 2 : 0;
     const Surface alone = surfaceOf(points, options);
-    EXPECT_TRUE(alone.history.frames.empty() && alone.history.vertices.empty());
     EXPECT_TRUE(alone.vertex_residuals.empty() && alone.diagnosis.triangle_marks.empty());
     const Surface seen = surfaceOf(points, watched(options));
     EXPECT_EQ(alone.triangles, seen.triangles);

@@ -66,15 +66,12 @@ TEST(ResultFields, EveryFieldOfEveryStructIsVisited) {
   static_assert(countFields<StageTime>() == 2);
   expectAllFieldsAreVisitedOf<MeshTopology, MeshMeasures, StageTime, Finding, Opening, PartBridge,
                               SurfaceDiagnosis, ConsolidationReport, LevelReport, EmbeddingReport,
-                              HistoryFrame, EmbeddingHistory, SmoothingReport, Surface, LeftOut,
-                              Result>();
+                              SmoothingReport, Surface, LeftOut, Result>();
 }
 
 TEST(ResultFields, EveryEnumeratorHasAName) {
   EXPECT_STREQ(nameOf(StopReason::IterationLimit), "iteration_limit");
   EXPECT_STREQ(nameOf(StopReason::Unfinished), namesOf(StopReason()).back());
-  EXPECT_STREQ(nameOf(EmbeddingStep::Newton), "newton");
-  EXPECT_STREQ(nameOf(EmbeddingStep::End), namesOf(EmbeddingStep()).back());
 }
 
 /// Calls visit(name, number, power of the unit) for every number of a result that has a unit.
@@ -104,9 +101,6 @@ Surface onNodes() {
   r.points = Positions::Constant(3, 4, 1.0);
   r.smoothing.emplace();
   r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
-  r.history.vertices = {3, 0};
-  r.history.frames.resize(1);
-  r.history.frames[0].sphere = Positions{{3, 0}, {3, 0}, {3, 0}};
   r.outliers = {0, 1};
   r.boundary = {{0, 1, 2}, {0, 3, 2}};
   r.openings.resize(1);
@@ -142,8 +136,6 @@ TEST(ResultFields, QuantitiesAreScaledByTheirPowersAndIndicesAreThoseOfVertices)
   EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
   EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));
   EXPECT_EQ(result.vertex_residuals, (std::vector<double>{1, 3, 0, 2}));
-  EXPECT_EQ(result.history.vertices, (Indices{1, 2}));
-  EXPECT_EQ(result.history.frames[0].sphere.col(0), Eigen::Vector3d::Constant(3.0));
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.boundary, (std::vector<Indices>{{0, 3, 2}, {1, 3, 2}}));  // turned, not sorted
   EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));

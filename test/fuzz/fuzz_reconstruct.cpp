@@ -25,8 +25,6 @@ Options optionsFrom(Bytes& bytes) {
   vary(embedding.tolerance, &Bytes::real);
   vary(options.seed, &Bytes::raw<std::uint32_t>);
   vary(options.smoothing, &Bytes::integer);
-  vary(embedding.history_vertices, &Bytes::integer);
-  vary(embedding.history_frames, &Bytes::integer);
   vary(options.threads, &Bytes::integer);
   options.details = which % 2 != 0;
   if (which / 2 % 2 != 0)
@@ -130,12 +128,6 @@ void checkSurface(const Positions& points, const Options& options, const Surface
   require(!options.details || result.sphere.cols() == 0 ||
               result.vertex_residuals.size() == result.vertexCount(),
           "there is a residual for each vertex on the sphere");
-  require(options.embedding.history_vertices > 0 || result.history.frames.empty(),
-          "there is no history without a request");
-  for (const HistoryFrame& frame : result.history.frames)
-    require(frame.sphere.cols() == static_cast<Eigen::Index>(result.history.vertices.size()) &&
-                areUnitVectors(frame.sphere),
-            "a frame of the history is of unit vectors");
   for (const auto& pair : result.self_intersections)
     require(0 <= pair[0] && pair[0] < pair[1] && pair[1] < result.triangles.cols(),
             "a pair is of two triangles");

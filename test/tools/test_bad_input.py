@@ -111,7 +111,7 @@ class BadInput(ToolTest):
                 "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
                 "-tolerance nan": "option -tolerance: 'nan'", "-damping ''": "option -damping: ''",
                 "-method ball": "option -method: 'ball'", "-outliers 1001": "option -outliers: '1001'",
-                "-history_frames 5": "'-history_frames'", "-parts each -min-points 3": "-min-points"},
+                "-parts each -min-points 3": "-min-points"},
             "scan sphere out.pcd": {
                 "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
                 "-seed -1": "option -seed: '-1'"},

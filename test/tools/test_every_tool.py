@@ -28,8 +28,8 @@ TOOLS = {
               "frames pairs align connectivity samples fit match check area-weight map-sweeps", "write"),
 }  # fmt: skip
 GUIDE = (pathlib.Path(__file__).resolve().parents[2] / "doc" / "guide.md").read_text()
-# Those of the table of the library, which the guide prints; -report alone sets those of the history.
-OPTIONS = re.findall(r"^\| `((?!history)\w+)`(?: \(expert\))? \| `[\w.]+` \|", GUIDE, re.MULTILINE)
+# Those of the table of the library, which the guide prints.
+OPTIONS = re.findall(r"^\| `(\w+)`(?: \(expert\))? \| `[\w.]+` \|", GUIDE, re.MULTILINE)
 
 
 def options_of(tool):
@@ -62,7 +62,6 @@ class EveryTool(ToolTest):
                 said = run(tool, "-h", "expert")
                 for option in options_of(tool):
                     self.assertIn(f"\n  -{option.replace('_', '-')} ", said)
-                self.assertNotIn("-history", said)
                 experts = said.index("\nExpert options:\n")
                 for option in ("surface", options_of(tool)[0]):
                     self.assertLess(said.index(f"\n  -{option} "), experts)

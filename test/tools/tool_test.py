@@ -10,7 +10,9 @@ import tempfile
 import unittest
 
 import numpy as np
-from draw import TYPES, read_ply  # noqa: F401
+from draw import read_ply  # noqa: F401
+
+TYPES = {"uchar": "u1", "int": "i4", "float": "f4", "double": "f8"}  # of PLY, those that the tools write
 
 
 def program(tool):

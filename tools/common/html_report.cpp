@@ -3,9 +3,6 @@
 #include "common/errors.h"
 #include "common/report_mesh.h"
 #include "common/text.h"
-#include "space_filling_curve.h"
-#include "spherical_param/result_fields.h"
-#include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
 #include <Eigen/Geometry>
@@ -24,13 +21,6 @@ namespace spherical_param::tools {
 namespace {
 
 constexpr std::string_view marker = "<!--DATA-->";
-
-/// Vertices and states of the history at most. Small meshes keep one vertex in 23, but at least
-/// 1000, so that the history is not larger than the mesh.
-constexpr Index max_history_vertices = 5000;
-constexpr int max_history_frames = 40;
-constexpr std::size_t vertices_for_history = 23;
-constexpr std::size_t min_history_vertices = 1000;
 
 /// Points left out that are shown at most.
 constexpr std::size_t max_left_out = 75000;
@@ -68,7 +58,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// An element that holds bytes deflated and in base64, which no text of theirs can end.
+/// An element that holds bytes, deflated and in base64. None of the bytes can close the element.
 std::string element(const std::string& id, std::string_view bytes) {
   return "<script type=\"text/plain\" id=\"" + id + "\">" + base64(deflated(bytes)) + "</script>\n";
 }
@@ -122,10 +112,6 @@ public:
     about_["area"]["max"] = {high};
   }
 
-  void addTriangles(const std::string& name, const Triangles& triangles) {
-    add(name, 3, std::vector<std::uint32_t>(triangles.data(), triangles.data() + triangles.size()));
-  }
-
   const Json& about() const { return about_; }
   const std::string& elements() const { return elements_; }
 
@@ -163,7 +149,9 @@ private:
 
 void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.addPoints("positions", mesh.positions, boxOf(mesh.positions));
-  arrays.addTriangles("triangles", mesh.triangles);
+  const std::vector<std::uint32_t> corners(mesh.triangles.data(),
+                                           mesh.triangles.data() + mesh.triangles.size());
+  arrays.add("triangles", 3, corners);
   arrays.add("suspicious", 1, mesh.marks);
   if (mesh.sphere.cols() > 0) {
     arrays.addPoints("sphere", mesh.sphere, unit_box);
@@ -175,8 +163,8 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   }
 }
 
-/// The rigid motion that brings the points of the sphere about to where those of the object are, by
-/// rows; null without a sphere.
+/// The rigid motion that best fits the points of the sphere to those of the object, row by row;
+/// null without a sphere.
 Json sphereTurn(const ReportMesh& mesh) {
   if (mesh.sphere.cols() == 0) {
     return nullptr;
@@ -185,7 +173,7 @@ Json sphereTurn(const ReportMesh& mesh) {
   return std::vector<double>(turn.data(), turn.data() + turn.size());
 }
 
-/// What the cloud has beside the mesh: colours, the points before smoothing.
+/// Adds the colours of the cloud, and its points if those of the mesh have moved.
 void addCloud(const CloudReconstruction& cloud, bool has_moved, const ReportMesh& mesh,
               Arrays& arrays) {
   if (!cloud.data->colors.empty()) {
@@ -217,51 +205,12 @@ std::size_t addLeftOut(const CloudReconstruction& cloud, const ReportMesh& mesh,
       shown[i] = left_out[i * left_out.size() / shown.size()];
     }
     const Positions points = positionsOf(*cloud.data)(Eigen::all, shown);
-    // One far off comes to the side of a box around the mesh, where it can be seen.
+    // Points outside of a box around the mesh are drawn on its sides, where they can be seen.
     const Eigen::AlignedBox3d box = boxOf(mesh.positions);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
     arrays.addPoints("left_out", points, {box.min() - margin, box.max() + margin});
   }
   return left_out.size();
-}
-
-/// Adds the unfolding, and returns its frames.
-Json addHistory(const Surface& result, Arrays& arrays) {
-  const EmbeddingHistory& history = result.history;
-  const std::size_t all = history.vertices.size();
-  const std::size_t count =
-      std::min(all, std::max(min_history_vertices, result.vertexCount() / vertices_for_history));
-  if (history.frames.empty() || count < 4) {
-    return Json::array();
-  }
-  std::vector<Index> places(count);  // among the vertices of the history
-  for (std::size_t i = 0; i < count; ++i) {
-    places[i] = static_cast<Index>(i * all / count);
-  }
-  const Positions& end = history.frames.back().sphere;
-  std::vector<Index> ordered;
-  std::vector<Index> vertices;
-  for (const Index i : internal::mortonOrder(end(Eigen::all, places))) {
-    ordered.push_back(places[static_cast<std::size_t>(i)]);
-    vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
-  }
-  const Positions positions = result.points(Eigen::all, vertices);
-  arrays.addPoints("history_positions", positions, boxOf(positions));
-  arrays.addTriangles("history_triangles", triangulateSphere(end(Eigen::all, ordered)));
-  const auto width = static_cast<Eigen::Index>(count);
-  Positions directions(3, width * static_cast<Eigen::Index>(history.frames.size()));
-  Json frames = Json::array();
-  for (const HistoryFrame& frame : history.frames) {
-    directions.middleCols(width * static_cast<Eigen::Index>(frames.size()), width) =
-        frame.sphere(Eigen::all, ordered);
-    frames.push_back({{"level", frame.level},
-                      {"nodes", frame.nodes},
-                      {"step", nameOf(frame.step)},
-                      {"iteration", frame.iteration},
-                      {"residual", frame.residual ? Json(*frame.residual) : Json(nullptr)}});
-  }
-  arrays.addPoints("history_frames", directions, unit_box);
-  return frames;
 }
 
 /// A word as a POSIX shell takes it.
@@ -281,7 +230,7 @@ std::string shellWord(const std::string& word) {
 }  // namespace
 
 std::vector<OptionInfo> htmlReportOptions() {
-  return {{"report", "FILE", "write a page (.html) to look at: mesh, sphere, unfolding, verdict"}};
+  return {{"report", "FILE", "write a page (.html) to look at: mesh, sphere, verdict"}};
 }
 
 std::string parseHtmlReport(const CommandLine& command_line) {
@@ -303,8 +252,6 @@ std::string parseHtmlReport(const CommandLine& command_line) {
 }
 
 void keepForHtmlReport(ReconstructionSettings& settings) {
-  settings.options.embedding.history_vertices = max_history_vertices;
-  settings.options.embedding.history_frames = max_history_frames;
   settings.options.details = true;
 }
 
@@ -361,7 +308,6 @@ void writeHtmlReport(OutputFile& file, const HtmlReportInput& input) {
   }
   json["left_out"] = addLeftOut(cloud, mesh, arrays);
   json["sphere_turn"] = sphereTurn(mesh);
-  json["frames"] = surfaces.size() == 1 ? addHistory(*surfaces.front(), arrays) : Json::array();
   json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));

@@ -12,11 +12,11 @@
 
 namespace spherical_param::tools {
 
-/// The line of -report.
+/// The option -report.
 std::vector<OptionInfo> htmlReportOptions();
 
-/// The file of -report; empty: none. \throw UsageError for a name without .html, or a program built
-/// without the page
+/// The file that -report names; empty without the option. \throw UsageError for a name without
+/// .html, or a program built without the page
 std::string parseHtmlReport(const CommandLine& command_line);
 
 /// Makes a reconstruction keep the data of a page.

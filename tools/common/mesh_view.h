@@ -14,7 +14,8 @@ namespace spherical_param::tools {
 
 using Triangle = std::array<std::int32_t, 3>;  ///< counter-clockwise from outside
 
-/// An image over a mesh, whose first two scalars are the place in it, u to the right and v up.
+/// An image on a mesh. The first two scalars of the mesh are the place in the image: u to the
+/// right, v up.
 struct MeshTexture {
   std::string image_name;  ///< beside the mesh
   std::string png;         ///< the image, as a file
@@ -64,7 +65,7 @@ public:
   bool hasNormals() const { return has_normals_; }
   bool hasColors() const { return !data_->colors.empty(); }
   bool hasAlpha() const { return data_->has_alpha; }
-  /// Of the colours, 0 without any.
+  /// Number of colour channels; 0 without colours.
   std::size_t channelCount() const { return !hasColors() ? 0 : hasAlpha() ? 4 : 3; }
   const std::vector<Scalar>& scalars() const { return data_->scalars; }
   const MeshTexture* texture() const { return texture_; }

@@ -25,23 +25,11 @@ std::optional<std::pair<std::string, std::string>> failedCondition(const OptionR
   return std::nullopt;
 }
 
-/// The rows of the table that tools have. Only the page of -report shows a history, and sets how
-/// much of it is kept.
-std::vector<OptionRow> toolRows() {
-  std::vector<OptionRow> rows;
-  for (const OptionRow& row : optionTable()) {
-    if (row.field.rfind("embedding.history_", 0) != 0) {
-      rows.push_back(row);
-    }
-  }
-  return rows;
-}
-
 }  // namespace
 
 OptionTable reconstructionOptions(ReconstructionSettings& settings) {
   OptionTable options;
-  for (const OptionRow& row : toolRows()) {
+  for (const OptionRow& row : optionTable()) {
     OptionInfo option = optionOf(
         row, [row, &settings] { return row.get(settings.options); },
         [row, &settings](const OptionValue& value) { row.set(settings.options, value); });
@@ -67,7 +55,7 @@ OptionTable reconstructionOptions(ReconstructionSettings& settings) {
 
 void parseReconstructionOptions(const CommandLine& command_line, ReconstructionSettings& settings) {
   const Options in_force = withTopology(settings.options);
-  for (const OptionRow& row : toolRows()) {
+  for (const OptionRow& row : optionTable()) {
     if (const auto failed = failedCondition(row, in_force)) {
       const auto& [other, needed] = *failed;
       command_line.refuse({replaced(row.name, '_', '-')},

@@ -107,7 +107,6 @@ class Shape {
     this.normalized = (array) => normalized(array.numbers());
     this.radius = radius;
     this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
-    this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
     this.positions = this.normalized(arrays.positions);
     this.sphere = arrays.sphere?.numbers();
     this.triangles = arrays.triangles.values;

@@ -43,10 +43,8 @@ function palette(...colors) {
 const sequential = palette('#440154', '#3b528b', '#21918c', '#5ec962', '#fde725');
 const diverging = palette('#08519c', '#6baed6', '#ececec', '#fd8d3c', '#a63603');
 
-/** Places in a box around 0 as colours: neighbours look alike, distant places do not. */
-function placeColors(rows, box) {
-  return Uint8Array.from(rows, (x, i) => 255 * (0.6 + 0.36 * (x / box[i % 3])));
-}
+/** Places on the sphere as colours: neighbours look alike, distant places do not. */
+const placeColors = (sphere) => Uint8Array.from(sphere, (x) => 255 * (0.6 + 0.36 * x));
 
 /** The ways to colour by, by key: {name, colors(), about, ends, text(share)}. Some need a sphere. */
 function makeModes(arrays, views) {
@@ -59,7 +57,7 @@ function makeModes(arrays, views) {
   const uniform = (level) => () => new Uint8Array(views.positions.length).fill(level);
   const place = arrays.sphere && {
     place: {
-      name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]), cells: true,
+      name: 'position on the sphere', colors: () => placeColors(views.sphere), cells: true,
       about: 'The same colour and the same cell of 15° mean the same place on the sphere.',
     },
   };
@@ -147,25 +145,21 @@ function showStill(data, arrays) {
     flagged.get(t) ?? colors.subarray(3 * shape.triangles[3 * t], 3 * shape.triangles[3 * t] + 3));
 }
 
-/** A button that leads to one place after the other. */
-function tour(attributes, color, text, places, lookAt) {
-  let next = 0;
-  const onclick = () => lookAt(places[next++ % places.length]);
-  return make('button', { type: 'button', ...attributes, onclick },
-    make('span', { class: 'swatch', style: { background: color } }), text);
-}
-
-/** Buttons that lead to suspicious triangles. */
-function showPlaces(kinds, views, select) {
-  byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
-    ...kinds.map((kind) => tour({ 'data-bit': kind.bit }, kind.color,
-      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ${counted(kind.places.length, 'place')}`,
-      kind.places, ([triangle]) => {
-        select('suspicious');
-        // A triangle may be of several kinds.
-        views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
-        views.lookAt(views.triangles[3 * triangle]);
-      })));
+/** Buttons that lead to the places of suspicious triangles, one after the other. */
+function showPlaces(kinds, views, showSuspicious) {
+  byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:', ...kinds.map((kind) => {
+    let next = 0;
+    const onclick = () => {
+      const [triangle] = kind.places[next++ % kind.places.length];
+      showSuspicious();
+      // A triangle may be of several kinds.
+      views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
+      views.lookAt(views.triangles[3 * triangle]);
+    };
+    return make('button', { type: 'button', 'data-bit': kind.bit, onclick },
+      make('span', { class: 'swatch', style: { background: kind.color } }),
+      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ${counted(kind.places.length, 'place')}`);
+  }));
 }
 
 function describe(vertex, modes, arrays) {
@@ -174,50 +168,6 @@ function describe(vertex, modes, arrays) {
   return [`Vertex at (${Array.from(place, (x) => number(x)).join(', ')})`,
     ...Object.values(modes).filter((mode) => mode.ramp).map(({ name, text, at, array }) =>
       `${name} ${text(at(array.values[vertex] / 255))}`)].join(' · ');
-}
-
-/** The slider over the frames, the last place of which is the result. */
-function makePlayer(views, frames, changed) {
-  const slider = byId('frame');
-  const count = frames.length;
-  let playing = false;
-  slider.max = count;
-  const show = (at) => {
-    const index = at >= count ? null : Math.floor(at);
-    slider.value = index ?? count;
-    views.setFrame(index === null ? null : Math.min(at, count - 1));
-    const { level, nodes, step, iteration, residual } = frames[index ?? 0];
-    byId('caption').textContent = index === null ? 'Result'
-      : `Frame ${index + 1} of ${count} · level ${level} · ${number(nodes)} nodes · ${step} ${iteration}` +
-        (residual === null ? '' : ` · residual ${number(residual, 3)}`);
-    changed(index);
-  };
-  const play = (on) => {
-    playing = on;
-    byId('play').textContent = on ? 'Pause' : 'Play';
-  };
-  byId('play').addEventListener('click', () => {
-    play(!playing);
-    let at = Number(slider.value) % count;
-    let before = null;
-    const step = (now) => {
-      if (!playing) return;
-      at += (Math.min(now - (before ?? now), 100) / 10000) * count; // ten seconds for all
-      before = now;
-      show(at);
-      if (at >= count) play(false);
-      else requestAnimationFrame(step);
-    };
-    requestAnimationFrame(step);
-  });
-  const seek = (at) => {
-    play(false);
-    show(at);
-  };
-  slider.addEventListener('input', () => seek(Number(slider.value)));
-  byId('unfolding').hidden = false;
-  show(count);
-  return seek;
 }
 
 function showViews(data, arrays, context) {
@@ -229,16 +179,10 @@ function showViews(data, arrays, context) {
   select.replaceChildren(...Object.entries(modes).map(([value, { name }]) => make('option', { value }, name)));
   const first = firstMode(kinds);
   select.value = first in modes ? first : 'plain';
-  const unfolding = {
-    colors: () => placeColors(views.positions, views.box),
-    about: 'During the unfolding colours mean the position on the object. Parts of the sphere that are inside out ' +
-      'are dark.',
-  };
   const paint = () => {
-    const mode = views.frame_at === null ? modes[select.value] : unfolding;
+    const mode = modes[select.value];
     views.setColors(mode.colors(), mode.cells);
     views.setFlags(mode === modes.suspicious ? kinds : []);
-    select.disabled = mode === unfolding;
     showLegend(mode);
   };
   select.addEventListener('change', paint);
@@ -250,22 +194,8 @@ function showViews(data, arrays, context) {
     byId('cloud-note').replaceChildren(make('span', { class: 'swatch', style: { background: left_out_color } }),
       `${counted(data.left_out, 'point')} left out`);
   }
-
-  let seek = () => {};
-  if (views.unfolding) {
-    views.history_color.array.set(placeColors(views.history_places, views.box));
-    let was_result;
-    const residuals = data.frames.map((frame) => frame.residual);
-    const moveCursor = showCurve(residuals, 'frame of the unfolding', (frame) => seek(frame));
-    seek = makePlayer(views, data.frames, (frame) => {
-      moveCursor(frame);
-      if (was_result !== (frame === null)) paint();
-      was_result = frame === null;
-    });
-  }
-  showPlaces(kinds, views, (key) => {
-    seek(data.frames.length);
-    select.value = key;
+  showPlaces(kinds, views, () => {
+    select.value = 'suspicious';
     paint();
   });
   paint();
@@ -276,9 +206,6 @@ async function main() {
   showVerdict(data);
   showTables(data);
   showStages(data.report.stages ?? []);
-  const [{ embedding }, ...others] = partsOf(data.report);
-  const residuals = (others.length === 0 && embedding?.residuals) || [];
-  showCurve(residuals, 'iteration', () => {});
   byId('content').hidden = false;
 
   const note = (text) => Object.assign(byId('note'), { hidden: false, textContent: text });
@@ -296,7 +223,6 @@ async function main() {
   const arrays = await readArrays(data.arrays);
   if (context) showViews(data, arrays, context);
   else showStill(data, arrays);
-  byId('residual-card').hidden = byId('residual').childElementCount === 0;
   byId('loading').hidden = true;
   document.documentElement.dataset.report = context ? 'ready' : 'still';
 }

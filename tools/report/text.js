@@ -1,19 +1,17 @@
-// What the page says in words, tables and charts. Text from the data only ever becomes text: file names are not to be
+// What the page says in words and tables. Text from the data only ever becomes text: file names are not to be
 // trusted.
 'use strict';
 
 const byId = (id) => document.getElementById(id);
 
-function fill(node, { style, onclick, ...attributes } = {}, ...children) {
+function make(tag, { style, onclick, ...attributes } = {}, ...children) {
+  const node = document.createElement(tag);
   Object.assign(node.style, style);
   if (onclick) node.addEventListener('click', onclick);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
   node.append(...children.flat());
   return node;
 }
-
-const make = (tag, ...content) => fill(document.createElement(tag), ...content);
-const svg = (tag, ...content) => fill(document.createElementNS('http://www.w3.org/2000/svg', tag), ...content);
 
 /** A number as people write it: 1,234 or 0.0123 or 1.2e-7. */
 function number(value, digits = 4) {
@@ -130,40 +128,4 @@ function showStages(stages) {
   showTable('stages', stages.map(({ name, seconds }) => headRow(name.replaceAll('_', ' '),
     make('td', { class: 'meter' }, make('div', { style: { width: `${(100 * seconds) / longest}%` } })),
     make('td', {}, `${number(seconds, 3)} s`))));
-}
-
-/**
- * A curve of residuals over their index on a logarithmic axis. A click calls `seek` with an index. Returns a function
- * that moves a cursor to an index; null hides it.
- */
-function showCurve(values, label, seek) {
-  const [width, height, left, bottom] = [560, 220, 50, 186];
-  const right = width - 10;
-  const last = Math.max(values.length - 1, 1);
-  const known = values.map((value, i) => [i, Math.log10(value)]).filter(([, exponent]) => Number.isFinite(exponent));
-  if (known.length < 2) return () => {};
-  const low = Math.floor(known.reduce((least, [, e]) => Math.min(least, e), Infinity));
-  const high = Math.max(Math.ceil(known.reduce((most, [, e]) => Math.max(most, e), -Infinity)), low + 1);
-  const x = (i) => left + (i / last) * (right - left);
-  const y = (e) => 10 + ((high - e) / (high - low)) * (bottom - 10);
-  const root = svg('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label, onclick: (event) => {
-    const rect = root.getBoundingClientRect();
-    const along = (((event.clientX - rect.left) / rect.width) * width - left) / (right - left);
-    seek(Math.round(Math.min(Math.max(along, 0), 1) * last));
-  } });
-  for (let e = low; e <= high; e += Math.ceil((high - low) / 6)) {
-    root.append(svg('line', { x1: left, x2: right, y1: y(e), y2: y(e), class: 'grid' }),
-      svg('text', { x: left - 6, y: y(e) + 4, 'text-anchor': 'end' }, `1e${e}`));
-  }
-  // Not more points than the curve has pixels, and always the last.
-  const stride = Math.ceil(known.length / 2000);
-  const shown = known.filter((entry, k) => k % stride === 0 || k === known.length - 1);
-  const cursor = svg('line', { y1: 10, y2: bottom, class: 'cursor', visibility: 'hidden' });
-  root.append(svg('text', { x: left, y: bottom + 16 }, '0'),
-    svg('text', { x: right, y: bottom + 16, 'text-anchor': 'end' }, number(last)),
-    svg('text', { x: width / 2, y: height - 6, 'text-anchor': 'middle' }, label),
-    svg('path', { class: 'curve', d: `M${shown.map(([i, e]) => `${x(i).toFixed(1)} ${y(e).toFixed(1)}`).join('L')}` }),
-    cursor);
-  byId('residual').append(root);
-  return (i) => fill(cursor, { visibility: i === null ? 'hidden' : 'visible', x1: x(i ?? 0), x2: x(i ?? 0) });
 }

@@ -77,12 +77,10 @@ class Views extends Shape {
     this.renderer.setPixelRatio(devicePixelRatio);
     this.renderer.setScissorTest(true);
     this.renderer.setClearColor(0, 0);
-    this.frame_at = null; // frame of the unfolding; null: the result
     this.makeScene(arrays, spacing, view);
     if (arrays.sphere) {
       this.align = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().set(...sphere_turn));
     }
-    if (arrays.history_frames) this.makeHistory(arrays);
     this.target = new THREE.Vector3();
     this.controls = this.names.map((name) => this.makeControls(name));
     this.reset();
@@ -99,8 +97,6 @@ class Views extends Shape {
     this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light, this.light.target);
     this.groups = Object.fromEntries(this.names.map((name) => [name, new THREE.Group()]));
     this.scene.add(...Object.values(this.groups));
-    this.result = new THREE.Group(); // all of the sphere but the unfolding
-    if (this.sphere) this.groups.sphere.add(this.result);
 
     const index = new THREE.BufferAttribute(this.triangles, 1);
     const position = rowsOf(this.positions);
@@ -166,9 +162,8 @@ class Views extends Shape {
   }
 
   add(name, object) {
-    // Nearly all is in sight: no need for bounds, which change with each frame of the unfolding.
-    object.traverse((part) => { part.frustumCulled = false; });
-    (name === 'sphere' ? this.result : this.groups[name]).add(object);
+    object.traverse((part) => { part.frustumCulled = false; }); // nearly all is in sight
+    this.groups[name].add(object);
     return object;
   }
 
@@ -280,37 +275,6 @@ class Views extends Shape {
       object.renderOrder = groups.length - i;
       return this.add(name, object);
     }));
-    this.request();
-  }
-
-  makeHistory(arrays) {
-    this.history = arrays.history_frames.numbers();
-    this.history_places = this.normalized(arrays.history_positions);
-    this.frame = rowsOf(new Float32Array(this.history_places.length));
-    this.history_color = colorsOf(this.history_places.length / 3);
-    this.unfolding = this.addSurface('sphere', geometryOf(
-      { position: this.frame, normal: this.frame, place: this.frame, color: this.history_color },
-      new THREE.BufferAttribute(arrays.history_triangles.values, 1)));
-    this.groups.sphere.add(this.unfolding); // beside the result
-    this.unfolding.children[2].visible = true; // colours alone hardly show how it moves
-    this.unfolding.visible = false;
-  }
-
-  /** Shows the sphere at a frame, or between two; null: the result. */
-  setFrame(at) {
-    this.frame_at = at;
-    if (at !== null) {
-      const { count, array } = this.frame;
-      const before = Math.floor(at) * count;
-      const after = Math.min(before + count, this.history.length / 3 - count);
-      for (let i = 0; i < count; ++i) {
-        this.vector(before + i, this.history).lerp(this.vector(after + i, this.history), at % 1)
-          .normalize().toArray(array, 3 * i);
-      }
-      this.frame.needsUpdate = true;
-    }
-    this.unfolding.visible = at !== null;
-    this.result.visible = at === null;
     this.request();
   }
 

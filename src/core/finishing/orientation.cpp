@@ -39,8 +39,6 @@ double agreementWith(const Positions& normals, const Positions& points, const Tr
 
 void mirror(Embedding& embedding) {
   embedding.directions = -embedding.directions;
-  for (HistoryFrame& frame : embedding.history.frames)
-    frame.sphere = -frame.sphere;
 }
 
 void orientOutward(const Positions& points, SphereMesh& mesh, Embedding& embedding) {

@@ -1,6 +1,5 @@
 #include "attempts.h"
 
-#include "embedding_history.h"
 #include "energy_mesh.h"
 #include "exact_predicates.h"
 #include "face_mesh.h"
@@ -225,7 +224,7 @@ private:
   /// Gives the best mesh its embedding, if it is wanted and there is one.
   void takeSphere() {
     const bool is_wanted = options_.details || options_.topology == TopologyMode::Sphere ||
-                           options_.embedding.tolerance || options_.embedding.history_vertices > 0;
+                           options_.embedding.tolerance;
     Embedding& embedding = best_->part.embedding;
     if (!is_wanted || best_->genus > 0 || best_->part.has_certain_triangles_only) {
       embedding = {};
@@ -264,7 +263,6 @@ private:
       const FilledGraph filled = fillOpenings(points_, graph_, openings);
       embedding = embed_graph(filled.graph, filled.points);
       embedding.directions = Positions(embedding.directions.leftCols(points_.cols()));
-      keepVertices([&](Index node) { return node < points_.cols(); }, embedding.history);
     }
     return embedding;
   }

@@ -40,7 +40,7 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
 }
 
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, EmbeddingRecorder& recorder, const Execution& execution) {
+                double tolerance, const Execution& execution) {
   const FractionReport progress = reportOf(execution, "embedding");
   const int threads = threadCount(execution.threads, graph.size());
   Embedding result;
@@ -53,9 +53,6 @@ Embedding embed(const Graph& graph, const Positions& points, const PaperOptions&
     report.residual = sweep(graph, options.weights, options.damping, u, moved, threads);
     report.residuals.push_back(report.residual);
     reportFraction(progress, report.iterations / (options.max_iterations + 1.0));
-    recorder.record(
-        {0, graph.size(), EmbeddingStep::Iteration, report.iterations, report.residual, {}},
-        [&] { return u; });
     if (report.residual <= tolerance)
       report.stop_reason = StopReason::Converged;
     if (report.residual <= tolerance || report.iterations >= options.max_iterations)
@@ -68,8 +65,6 @@ Embedding embed(const Graph& graph, const Positions& points, const PaperOptions&
   // Judged at the end only: centring undoes a passing collapse within a few steps.
   if (isCollapsed(centroid))
     report.stop_reason = StopReason::Collapsed;
-  recorder.record({0, graph.size(), EmbeddingStep::End, report.iterations, report.residual, {}},
-                  [&] { return u; });
   return result;
 }
 

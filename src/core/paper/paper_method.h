@@ -1,7 +1,6 @@
 #pragma once
 
 #include "embedding.h"
-#include "embedding_history.h"
 #include "graph.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
@@ -27,11 +26,10 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
 /// \param graph     n >= 1 nodes, connected.
 /// \param points    3 x n, finite.
 /// \param tolerance mean length of the tangential Laplacian at convergence [radius].
-/// \param recorder  receives all states.
 /// \return the embedding; StopReason::Collapsed if nearly all points are at one place.
 /// Cost: O(edges) for each iteration.
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
-                double tolerance, EmbeddingRecorder& recorder, const Execution& execution);
+                double tolerance, const Execution& execution);
 
 /// Section 3: the convex hull of the points on the sphere, by qhull. It leaves out points closer
 /// than its round-off; their exact Delaunay triangulation, which is the same hull, takes its place.

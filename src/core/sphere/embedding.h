@@ -11,9 +11,8 @@ namespace spherical_param {
 
 /// An embedding of a graph on the unit sphere.
 struct Embedding {
-  Positions directions;      ///< 3 x n, unit vectors, column i = node i
-  EmbeddingReport report;    ///< convergence and levels
-  EmbeddingHistory history;  ///< empty without EmbeddingOptions::history_vertices
+  Positions directions;    ///< 3 x n, unit vectors, column i = node i
+  EmbeddingReport report;  ///< convergence and levels
 };
 
 /// Embeds a graph on the unit sphere so that the tangential Laplacian vanishes:
@@ -45,7 +44,7 @@ struct Embedding {
 ///
 /// \param graph   n nodes, connected, with positive edge lengths.
 /// \param points  3 x n, finite: the points that the nodes stand for.
-/// \param options when to end, history
+/// \param options when to end
 /// \param seed    of the coarse graphs.
 /// \param execution threads, progress
 /// \return the embedding, the same, bit by bit, for any number of threads.

@@ -130,8 +130,7 @@ std::vector<double> minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCyc
   for (int iteration = 0;; ++iteration) {
     const EmbeddingEnergy::Residual& residual = current.residual;
     residuals.push_back(residual.absolute);
-    if (options.progress)
-      options.progress(iteration, residual.absolute);
+    reportFraction(options.report, 0.0);
     const bool converged = residual.absolute <= options.tolerance.value_or(1.0) &&
                            residual.relative <= options.relative_tolerance;
     const bool collapses = options.collapses && options.collapses(current.directions);
@@ -152,9 +151,9 @@ std::vector<double> minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCyc
         next->residual.relative > max_lag * ratio * residual.relative)
       refinements = 4;
     current = std::move(*next);
-    directions = current.directions;  // for the observer of the progress
     ++report.newton_iterations;
   }
+  directions = std::move(current.directions);
   report.residual = residuals.back();
   return residuals;
 }

@@ -2,6 +2,7 @@
 
 #include "embedding_energy.h"
 #include "laplacian_cycle.h"
+#include "progress.h"
 #include "spherical_param/result.h"
 
 #include <functional>
@@ -10,12 +11,11 @@
 
 namespace spherical_param::internal {
 
-/// When the solution ends, and who sees it.
+/// When the solution ends.
 struct NewtonOptions {
   double relative_tolerance;        ///< of the residual in units of each node's mean edge
   std::optional<double> tolerance;  ///< of the mean tangential Laplacian [radius]
-  /// Called with (iteration, residual) before each step; throws to end the work. May be empty.
-  std::function<void(int, double)> progress;
+  FractionReport report = {};       ///< called with 0 before each step
   /// Whether the work is given up because the embedding collapses; may be empty.
   std::function<bool(const Positions&)> collapses = nullptr;
 };

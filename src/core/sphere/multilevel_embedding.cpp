@@ -1,6 +1,5 @@
 #include "multilevel_embedding.h"
 
-#include "embedding_history.h"
 #include "level_solver.h"
 #include "planar_start.h"
 #include "progress.h"
@@ -56,7 +55,7 @@ public:
   Ascent(const EmbeddingLevels& levels, const EmbeddingAttempt& attempt,
          const EmbeddingOptions& options, const Execution& execution)
       : levels_(levels), attempt_(attempt), options_(options),
-        report_(reportOf(execution, "embedding")), recorder_(levels.graph(0).size(), options) {
+        report_(reportOf(execution, "embedding")) {
     for (std::size_t l = 0; l <= levels.coarsest(); ++l)
       result_.report.levels.push_back(untried(l));
   }
@@ -106,13 +105,12 @@ private:
     std::optional<Positions> best;
     double least = std::numeric_limits<double>::infinity();
     std::size_t accepted = 0;
-    Index center = -1;
     LevelReport& kept = result_.report.levels[l];
     for (std::size_t i = 0; i < most && accepted < attempt_.compared; ++i) {
       reportFraction(report_, static_cast<double>(i) / static_cast<double>(most));
       Positions u = planarStart(levels_.graph(l), centers[i]);
       LevelReport work = untried(l);
-      solveStart({}, u, work);
+      solveStart(u, work);
       if (!isAccepted(l, u))
         continue;
       ++accepted;
@@ -121,25 +119,14 @@ private:
         continue;
       least = value;
       best = std::move(u);
-      center = centers[i];
       kept = work;
-    }
-    // Only now is it known which one to show.
-    if (best && options_.history_vertices > 0) {
-      Positions u = planarStart(levels_.graph(l), center);
-      record(l, EmbeddingStep::Start, 0, std::nullopt, u);
-      LevelReport work;
-      solveStart([&](int iteration,
-                     double residual) { record(l, EmbeddingStep::Newton, iteration, residual, u); },
-                 u, work);
     }
     return best;
   }
 
   /// Solves a planar start. Its barrier is that of the start before the sweeps, which is stronger:
   /// with that after them, a cut penguin has 42 intersections instead of 12 (mean of five seeds).
-  void solveStart(const std::function<void(int, double)>& progress, Positions& u,
-                  LevelReport& work) const {
+  void solveStart(Positions& u, LevelReport& work) const {
     // Smoothing sweeps on a planar start, whose edges are far from their lengths. With 0, 9 of the
     // 52 intersect themselves.
     constexpr int start_sweeps = 3;
@@ -147,17 +134,15 @@ private:
     levels_.smooth(attempt_.level, start_sweeps, {}, u);
     work.sweeps = start_sweeps;
     levels_.solve(attempt_.level, hasBarrier(attempt_.level) ? &planar : nullptr,
-                  {kStartTolerance, std::nullopt, progress}, u, work);
+                  {kStartTolerance, std::nullopt}, u, work);
   }
 
   /// Takes the embedding to the next finer level.
   void refine(std::size_t l, Positions& u) {
     LevelReport& work = result_.report.levels[l];
     u = levels_.interpolated(l, u);
-    record(l, EmbeddingStep::Start, 0, std::nullopt, u);
     work.residual = levels_.smooth(l, kSweeps, report_, u);
     work.sweeps = kSweeps;
-    record(l, EmbeddingStep::Sweeps, kSweeps, std::nullopt, u);
     if (work.nodes <= kMaxSolvedSize && !(l == 0 && options_.tolerance))
       solve(l, std::nullopt, u);
   }
@@ -168,11 +153,7 @@ private:
                                       : attempt_.barrier == EmbeddingBarrier::CoarseLevels
                                           ? kFreedTolerance
                                           : kGraphTolerance;
-    const auto progress = [&](int iteration, double residual) {
-      reportFraction(report_, 0.0);
-      record(l, EmbeddingStep::Newton, iteration, residual, u);
-    };
-    return levels_.solve(l, hasBarrier(l) ? &u : nullptr, {relative_tolerance, tolerance, progress},
+    return levels_.solve(l, hasBarrier(l) ? &u : nullptr, {relative_tolerance, tolerance, report_},
                          u, result_.report.levels[l]);
   }
 
@@ -181,17 +162,6 @@ private:
     return attempt_.barrier == EmbeddingBarrier::Everywhere ||
            (attempt_.barrier == EmbeddingBarrier::CoarseLevels &&
             (l > 0 || levels_.coarsest() == 0));
-  }
-
-  void record(std::size_t l, EmbeddingStep step, int iteration, std::optional<double> residual,
-              const Positions& u) {
-    const auto carried = [&] {
-      Positions finest = u;
-      for (std::size_t k = l; k-- > 0;)
-        finest = levels_.interpolated(k, finest);
-      return finest;
-    };
-    recorder_.record({l, levels_.graph(l).size(), step, iteration, residual, {}}, carried);
   }
 
   void finish(Positions& u) {
@@ -207,8 +177,6 @@ private:
       report.stop_reason =
           report.residual <= *options_.tolerance ? StopReason::Converged : StopReason::Stagnated;
     report.centroid_norm = levels_.centroid(0, u).norm();
-    record(0, EmbeddingStep::End, 0, report.residual, u);
-    result_.history = recorder_.take();
     result_.directions = std::move(u);
   }
 
@@ -216,7 +184,6 @@ private:
   const EmbeddingAttempt& attempt_;
   const EmbeddingOptions& options_;
   FractionReport report_;
-  EmbeddingRecorder recorder_;
   Embedding result_;
 };
 

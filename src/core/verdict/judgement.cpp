@@ -58,7 +58,6 @@ void judge(const Positions& points, const NeighborGraph& graph, PartMesh mesh,
           graph.graph, mesh.embedding.directions,
           options.method == Method::Paper ? options.paper.weights : EdgeWeights::Adaptive);
     surface.sphere = std::move(mesh.embedding.directions);
-    surface.history = std::move(mesh.embedding.history);
   }
   surface.embedding = std::move(mesh.embedding.report);
   // The steps of a grid look like noise.

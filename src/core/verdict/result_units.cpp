@@ -1,6 +1,5 @@
 #include "result_units.h"
 
-#include "embedding_history.h"
 #include "power_of_two.h"
 #include "spherical_param/result_fields.h"
 
@@ -54,7 +53,6 @@ void dropUnused(OrderedPoints& nodes, Surface& surface) {
   nodes.input_of_vertex = std::move(input_of_vertex);
   renumber(number, nodes.vertex_of_input);
   renumber(number, nodes.vertex_of_node);
-  keepVertices([&](Index node) { return nodes.vertex_of_node[node] >= 0; }, surface.history);
 }
 
 /// Gives indices and arrays that were computed on nodes the numbers of the vertices.

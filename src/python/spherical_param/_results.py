@@ -109,7 +109,7 @@ class Result(Surface, OfCloud):
     _source: Source
 
     def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
-        """Write a page to look at: mesh, sphere, unfolding and findings, in one file.
+        """Write a page to look at: mesh, sphere and findings, in one file.
 
         It opens in a browser without a network. The points are meshed once more for the data of the
         page, which take no memory before.

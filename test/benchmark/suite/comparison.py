@@ -35,9 +35,9 @@ RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "one thread [s]"
 PARAMETERS = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
 
 # Scans, quick and in full.
-GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety", "max", "igea"))
+GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "tweety", "max", "igea"))
 WITH_PEERS = (("animal_2000",), ("hand_10000",))
-WITH_HANDLES = (("chair_2000",), ("torus_10000", "double_torus_10000", "chair_10000"))
+WITH_HANDLES = (("chair_2000",), ("torus_10000", "chair_10000"))
 RACES = (("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))
 
 

@@ -117,17 +117,6 @@ def _cloud(context, row):
     return Cloud(row.name, path), len(points)
 
 
-def _draw(path, files, captions, view):
-    from PIL import Image
-
-    draw.main([str(path), *map(str, files), f"--size={360 * len(files)}x360", f"--view={view[0]},{view[1]}", "--back",
-               *(f"--caption={caption}" for caption in captions)])  # fmt: skip
-    # 256 colours are enough, for a third of the bytes. Without dithering shades become patches.
-    image = Image.open(path).convert("RGB")
-    colors = image.quantize(256, method=Image.Quantize.FASTOCTREE)  # keeps white and orange
-    image.quantize(palette=colors, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
-
-
 def scans(context):
     """All real scans by default options, beside the fastest peer."""
     real = [row for row in ROWS if row.source] + OTHERS
@@ -156,7 +145,9 @@ def section(context):
         all_rows += [{"cloud": row.name, **one} for one, _ in compared]
         made = [(mesh, CAPTION.format(**one)) for one, mesh in compared if mesh]
         files, captions = zip((cloud.points, f"{count:,} points\n"), *made)
-        _draw(folder / f"{row.name}.png", files, captions, row.view)
+        draw.main([str(folder / f"{row.name}.png"), *map(str, files), f"--size={360 * len(files)}x360", "--back",
+                   f"--view={row.view[0]},{row.view[1]}",
+                   *(f"--caption={caption}" for caption in captions)])  # fmt: skip
         report.picture(f"gallery/{row.name}.png", f"{row.name}: the cloud and the mesh of each method")
     report.table("gallery", COLUMNS, all_rows)
     scans(context)

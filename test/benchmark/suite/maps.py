@@ -4,8 +4,6 @@ import json
 
 from .programs import flat, require, stage_seconds
 
-SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake", "plate", "torus",
-          "bowl", "pair")  # fmt: skip
 SPHERE = "-topology", "sphere"  # all clouds have a map
 # Points of a geodesic sphere of frequency 32 or 128, and the side of an image of about as many pixels.
 GRIDS = (10242, 101), (163842, 405)
@@ -61,21 +59,19 @@ def section(context):
         triangle's fraction of the area on the sphere to its fraction in space; angle distortion is the ratio of the
         singular values. Both are weighted by area and are 1 without distortion. Stretch efficiency: Praun
         and Hoppe 2003.""")
-    names = context.choose(("animal_2000",), [f"{shape}_10000" for shape in SHAPES])
-    generated = [programs.scan(name, truth=False) for name in names]
-    for name, clouds in (("maps", context.models), ("maps_generated", generated)):
-        rows = []
-        for cloud in clouds:
-            context.say(f"map: {cloud.name}")
-            rows.append(_map_row(cloud, _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]))
-        report.table(name, MAPS, rows)
+    generated = [programs.scan(name) for name in context.choose(("animal_2000",), ("hand_10000", "igea"))]
+    rows = []
+    for cloud in context.models or generated:
+        context.say(f"map: {cloud.name}")
+        rows.append(_map_row(cloud, _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]))
+    report.table("maps", MAPS, rows)
     by_size = sorted((one for one in context.models if one.truth), key=lambda one: one.points.stat().st_size)
     # The smallest, one in the middle, the largest: each takes ten seconds or more.
     half = len(by_size) // 2
     chosen = dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:])
     points, side = context.choose(*GRIDS)
     rows = []
-    for cloud in chosen or map(programs.scan, context.choose(("animal_2000",), ("hand_10000", "igea"))):
+    for cloud in chosen or generated:
         context.say(f"remesh: {cloud.name}")
         rows += _remeshed_rows(context, cloud, points, side)
     report.text(f"""

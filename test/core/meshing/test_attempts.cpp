@@ -106,9 +106,7 @@ TEST(Attempts, WhereTheFacesCloseUpThereIsASphereOnRequestAlone) {
     EXPECT_EQ(plain.surface().sphere.cols(), 0);
     Options details;
     details.details = true;
-    Options history;
-    history.embedding.history_vertices = 10;
-    for (const Options& options : {details, history, given("tolerance", 1e-6)}) {
+    for (const Options& options : {details, given("tolerance", 1e-6)}) {
       const Surface seen = surfaceOf(points, options);
       ASSERT_EQ(seen.sphere.cols(), points.cols());
       EXPECT_GT(volumeOf(seen.sphere, seen.triangles), 0.0);
@@ -187,7 +185,6 @@ TEST(Attempts, WorksWithTheOtherOptions) {
   EXPECT_EQ(smooth.topology.genus, 1);
   EXPECT_NE(smooth.points, torus);
   EXPECT_TRUE(smooth.vertex_residuals.empty());
-  EXPECT_TRUE(smooth.history.frames.empty());
   const Options consolidated = given("consolidation", "auto", "outliers", "auto");
   const Positions scattered =
       horizontally(withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));

@@ -77,8 +77,7 @@ Graph nearestGraph(const Positions& points, int k) {
 
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
                 double tolerance) {
-  EmbeddingRecorder none(graph.size(), {});
-  return internal::paper::embed(graph, points, options, tolerance, none, {});
+  return internal::paper::embed(graph, points, options, tolerance, {});
 }
 
 /// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean

@@ -18,9 +18,6 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   surface.triangles << node_of[0], node_of[0], node_of[0], node_of[2], node_of[3], node_of[2],
       node_of[5], node_of[3], node_of[2], node_of[5], node_of[3], node_of[5];
   surface.sphere = nodes.points;
-  surface.history.vertices = {node_of[1], node_of[2]};
-  surface.history.frames.resize(1);
-  surface.history.frames[0].sphere = nodes.points(Eigen::all, surface.history.vertices);
   surface.outliers = {node_of[1], node_of[5]};
   surface.topology.unused_vertices = {node_of[1]};
   toInput(nodes, surface);
@@ -28,8 +25,6 @@ TEST(ResultUnits, NodesWithoutTrianglesAreNoVertices) {
   EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{0, 2, 3, 5}));
   EXPECT_EQ(surface.sphere.cols(), 4);
   EXPECT_EQ(surface.triangles.maxCoeff(), 3);
-  EXPECT_EQ(surface.history.vertices, (std::vector<Index>{1}));
-  EXPECT_EQ(surface.history.frames[0].sphere.cols(), 1);
   EXPECT_EQ(surface.outliers, (std::vector<Index>{5}));
   EXPECT_TRUE(surface.topology.unused_vertices.empty());
 
