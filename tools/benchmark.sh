@@ -5,7 +5,7 @@
 #
 #   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
 #                      [--only clean|paper|comparison|maps|scaling|gallery]
-#                      [--clean DIR... --clean-list FILE [--update-clean]]
+#                      [--clean DIR]... [--clean-list FILE] [--update-clean]
 #
 #   OUT           folder for the report
 #   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply;
@@ -14,8 +14,8 @@
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
 #   --update-doc  also put the tables into README.md and doc, and the pictures into doc/gallery
-#   --clean       folder of your own clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the
-#                 list FILE names must be meshed as cleanly as when it was written
+#   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list
+#                 test/benchmark/clean.txt (or FILE) names must be meshed as cleanly as before
 #   --update-clean  mesh all clouds of these folders, and put the clean ones into the list
 set -euo pipefail
 

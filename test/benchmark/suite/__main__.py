@@ -53,13 +53,13 @@ def main(words):
     parser.add_argument("--only", choices=SECTIONS, action="append", default=[])
     parser.add_argument("--update-doc", action="store_true")
     parser.add_argument("--clean", type=pathlib.Path, metavar="DIR", action="append", default=[])
-    parser.add_argument("--clean-list", type=pathlib.Path, metavar="FILE")
+    parser.add_argument("--clean-list", type=pathlib.Path, metavar="FILE", default=clean.LIST)
     parser.add_argument("--update-clean", action="store_true")
     parser.add_argument("--build", type=pathlib.Path, required=True)
     arguments = parser.parse_args(words)
+    if not arguments.clean and (arguments.update_clean or "clean" in arguments.only):
+        raise Failure("no clouds are given to compare", "add --clean DIR")
     sections = arguments.only or [name for name in SECTIONS if name != "clean" or arguments.clean]
-    if ("clean" in sections or arguments.update_clean) and not (arguments.clean and arguments.clean_list):
-        raise Failure("no clouds or no list are given to compare", "add --clean DIR and --clean-list FILE")
     out = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     if any(out.iterdir()) and not (out / "report.md").is_file():

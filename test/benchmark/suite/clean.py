@@ -5,9 +5,11 @@ A mesh is clean if the tool finds no fault in it and the referee no triangles th
 
 import concurrent.futures
 import os
+import pathlib
 
 from .programs import Cloud, Failure, is_sound
 
+LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
 NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
 CLEAN = [(title, title) for title in ("cloud", "result", "remark", *NUMBERS)]
 RESULTS = ("lost", "not found", "other points", "changed", "newly clean", "not clean", "as before")
