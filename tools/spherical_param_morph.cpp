@@ -56,7 +56,7 @@ struct Settings {
   SurfaceFit fit = SurfaceFit::Linear;
   bool match = false;
   bool check = false;
-  ProductSettings product{HandlesOnSphere::Refused};
+  ProductSettings product{TopologyMode::Sphere};
   OutputSettings report;
 
   bool isResampled() const { return morph.connectivity == MorphConnectivity::Resampled; }
@@ -165,8 +165,8 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
   std::array<Eigen::Vector3d, 2> centers;
   std::array<double, 2> areas{};
   for (std::size_t side = 0; side < 2; ++side) {
-    const Positions& points = clouds[side].mesh.points;
-    const Triangles& triangles = clouds[side].mesh.triangles;
+    const Positions& points = clouds[side].points();
+    const Triangles& triangles = clouds[side].triangles();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points.col(triangles(0, 0));
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {

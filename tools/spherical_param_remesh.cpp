@@ -69,7 +69,7 @@ struct Settings {
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
-  ProductSettings product{HandlesOnSphere::Refused, mapOptionsForResampling()};
+  ProductSettings product{TopologyMode::Sphere, mapOptionsForResampling()};
   OutputSettings report;
 
   /// Whether a geometry image becomes a mesh; else the input is a cloud.
@@ -220,7 +220,7 @@ GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurf
 void resample(const Settings& settings, const MappedCloud& mapped, const SphereSurface& surface,
               Output& output) {
   const std::size_t wanted =
-      settings.points ? *settings.points : static_cast<std::size_t>(mapped.mesh.points.cols());
+      settings.points ? *settings.points : static_cast<std::size_t>(mapped.points().cols());
   if (settings.makesCloud()) {
     SurfacePoints points =
         sampleEvenly(surface, wanted, settings.product.reconstruction.options.seed);
@@ -255,7 +255,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
     if (!settings.readsImage() && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
-      output.distance = distanceFromMesh(mapped.mesh.points, mapped.map.sphere, surface);
+      output.distance = distanceFromMesh(mapped.points(), mapped.map.sphere, surface);
     }
   }
   output.stages.push_back(console.end());

@@ -52,7 +52,7 @@ struct Settings {
   TextureAtlasOptions atlas;
   BakeOptions bake;
   std::optional<int> cells;  ///< none: the colours of the points, if there are any
-  ProductSettings product{HandlesOnSphere::Cut};
+  ProductSettings product{TopologyMode::Scan};
   OutputSettings report;
 
   std::string extension() const { return extensionOf(output); }
@@ -163,7 +163,7 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
   mapped.cloud.offset = settings.report.offsetOf(settings.output, *mapped.cloud.data);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
-  output.atlas = makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
+  output.atlas = makeTextureAtlas(mapped.triangles(), mapped.map.sphere, settings.atlas);
   output.stages.push_back(console.end());
 
   console.begin("image");
@@ -172,14 +172,13 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
     output.image = bakeCheckerboard(output.atlas, mapped.map.sphere,
                                     settings.cells.value_or(usual_cells), settings.bake);
   } else {
-    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.mesh.points.cols());
+    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.points().cols());
     for (Eigen::Index v = 0; v < colors.cols(); ++v) {
       const Color& color = mapped.colors[static_cast<std::size_t>(v)];
       colors.col(v) << color[0], color[1], color[2];
     }
     output.image = bakeColors(output.atlas, colors, settings.bake);
   }
-  output.atlas = joinCuts(std::move(output.atlas), mapped.mesh);
   output.stages.push_back(console.end(output.pixels()));
 }
 
@@ -210,7 +209,6 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
                    {"height", output.image.height},
                    {"covered_share", output.share(1)},
                    {"gutter_share", output.share(2)}};
-  json["cut_handles"] = mapped.cloud.surface().genus();
   json["cut_vertices"] = cutVertices(mapped, output);
   json["texture_coordinates"] = output.atlas.coordinates.cols();
   json["triangles"] = output.atlas.triangles.cols();

@@ -50,7 +50,7 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
   if (topology.components == 1 && topology.genus.value_or(0) > 0)
     throw InvalidInput(caller + "the mesh does not map to a sphere: its genus is " +
                        std::to_string(*topology.genus) +
-                       "; cut its handles, by handles = none of reconstruct() or by cutHandles()");
+                       "; cut its handles, by handles = none of reconstruct()");
   if (start.cols() > 0 && start.cols() != points.cols())
     throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
                        " vertices, but the start has " + std::to_string(start.cols()) +

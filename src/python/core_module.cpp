@@ -6,7 +6,6 @@
 #include "python/arrays.h"
 #include "python/conversions.h"
 #include "python/files.h"
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_surface.h"
@@ -193,25 +192,16 @@ py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::siz
   return dict;
 }
 
-/// \param points of a mesh without a map, which may have handles; then `sphere` is a start of the
-///               map, or empty.
-py::dict textureAtlas(const std::optional<Positions>& points, const Triangles& triangles,
-                      const Positions& sphere, const std::string& chart, double margin) {
+py::dict textureAtlas(const Triangles& triangles, const Positions& sphere, const std::string& chart,
+                      double margin) {
   TextureAtlasOptions options;
   options.chart = valueOf<SphereChart>(chart, {{"octahedral", SphereChart::Octahedral},
                                                {"equirectangular", SphereChart::Equirectangular},
                                                {"cube", SphereChart::CubeMap}});
   options.margin = margin;
   Listener listener(py::none{});
-  const TextureAtlas atlas = listener.run([&] {
-    if (!points)
-      return makeTextureAtlas(triangles, sphere, options);
-    const CutMesh cut = cutHandles(*points, triangles);
-    SphereMapOptions map_options;
-    static_cast<Execution&>(map_options) = listener.execution(0);
-    const SphereMap map = computeSphereMap(cut.points, cut.triangles, sphere, map_options);
-    return joinCuts(makeTextureAtlas(cut.triangles, map.sphere, options), cut);
-  });
+  const TextureAtlas atlas =
+      listener.run([&] { return makeTextureAtlas(triangles, sphere, options); });
   std::vector<std::array<Index, 3>> corners;
   Positions weights(3, static_cast<Eigen::Index>(atlas.vertices.size()));
   for (std::size_t i = 0; i < atlas.vertices.size(); ++i) {
@@ -310,6 +300,6 @@ PYBIND11_MODULE(_core, module) {
              py::kw_only(), "threads"_a);
   module.def("remesh", &remeshSurface, "mesh"_a, py::kw_only(), "grid"_a, "count"_a, "fit"_a,
              "seed"_a, "threads"_a, "progress"_a);
-  module.def("texture_coordinates", &textureAtlas, "points"_a, "triangles"_a, "sphere"_a,
-             py::kw_only(), "chart"_a, "margin"_a);
+  module.def("texture_coordinates", &textureAtlas, "triangles"_a, "sphere"_a, py::kw_only(),
+             "chart"_a, "margin"_a);
 }

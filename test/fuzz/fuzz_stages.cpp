@@ -4,7 +4,6 @@
 #include "embedding.h"
 #include "fuzz_input.h"
 #include "paper_method.h"
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_map.h"
@@ -178,37 +177,6 @@ void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool flips) {
   geometryImageOfMesh(mesh);
 }
 
-void fuzzCuts(Bytes& bytes) {
-  const int rings = 3 + bytes.byte() % 8;
-  const int around = 3 + bytes.byte() % 8;
-  Triangles triangles = test::torusTriangles(rings, around);
-  Positions points(3, rings * around);
-  for (double& x : points.reshaped())
-    x = bytes.byte();
-  if (bytes.oneIn(8))
-    triangles.data()[bytes.byte() % triangles.size()] = bytes.byte() % points.cols();
-  if (bytes.oneIn(2))  // an opening
-    triangles = Triangles(triangles.rightCols(triangles.cols() - 1 - bytes.byte() % 2));
-  const CutMesh cut = cutHandles(points, triangles);
-  require(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface(),
-          "a cut torus is an open surface");
-  const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
-  TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere, {bytes.choice<SphereChart>(3)});
-  CutMesh spoiled = cut;
-  const std::uint8_t fault = bytes.byte();
-  if (fault == 1)
-    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
-  else if (fault == 2)
-    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.byte();
-  else if (fault == 3)
-    spoiled.vertex_of[bytes.byte() % spoiled.vertex_of.size()] = bytes.byte();
-  else if (fault == 4)
-    atlas.source.resize(bytes.byte());
-  atlas = joinCuts(std::move(atlas), spoiled);
-  const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
-  require(fault > 1 || (topology.isSurface() && topology.genus == 1), "joined, it is a torus");
-}
-
 void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
   const SphereSurface surface = surfaceFrom(bytes, points, watch);
   const Eigen::Vector3d direction(bytes.real(), bytes.real(), bytes.real());
@@ -239,10 +207,6 @@ void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
 }
 
 void fuzzTexture(Bytes& bytes, const Positions& points, Watch& watch) {
-  if (bytes.oneIn(4)) {
-    fuzzCuts(bytes);
-    return;
-  }
   const Mapped mapped = mapFrom(bytes, points, watch);
   TextureAtlasOptions options;
   options.chart = bytes.choice<SphereChart>(3);

@@ -171,6 +171,7 @@ class BadInput(ToolTest):
             "reconstruction both.xyz out%03d.ply -parts each -sphere s%03d.ply":
                 "part 2 of 'both.xyz' has no map to one sphere",
             "remesh torus.xyz out.ply -handles auto": cause,
+            "texture torus.xyz out.glb": cause,
             "morph in.xyz torus.xyz out.ply -handles auto": cause,
             "reconstruction tangle.xyz out.ply -sphere s.ply":
                 "'tangle.xyz' has no map to one sphere: it is a tangle",

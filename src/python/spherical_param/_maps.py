@@ -95,14 +95,14 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
     return Distortion(**fields)
 
 
-def _start(mesh: Result, *, cuts_handles: bool = False) -> FloatArray:
+def _start(mesh: Result) -> FloatArray:
     """The embedding of a mesh that has a map to one sphere; (0, 3) without one."""
     handles = mesh.topology.genus or 0
     if mesh.has_certain_triangles_only:
         problem = 'is a tangle; give reconstruct() topology="sphere", which maps it as it is'
     elif mesh.topology.components > 1:
         problem = f'is in {mesh.topology.components} pieces; give reconstruct() topology="sphere", which joins them'
-    elif handles and not cuts_handles:
+    elif handles:
         problem = f"has {handles} handle{'s' * (handles > 1)}; give reconstruct() handles=\"none\", which cuts them"
     else:
         return np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
@@ -345,8 +345,7 @@ def texture_coordinates(
     Parameters
     ----------
     mesh : SphereMap, Remeshed or Result
-        A map that is one to one, or a mesh, which is mapped as by ``sphere_map``. One with handles
-        is cut along short loops for it, which stay cuts of the chart, but not of the mesh.
+        A map that is one to one, or a mesh, for which ``sphere_map`` is called first.
     chart : {"octahedral", "equirectangular", "cube"}
         Layout, for images of 1:1, 2:1 and 3:2.
     margin : float, [0, 0.25)
@@ -355,23 +354,20 @@ def texture_coordinates(
     Raises
     ------
     InvalidInput
-        A triangle is flipped on the sphere, or an option is not as described.
+        The mesh has handles, a triangle is flipped on the sphere, or an option is not as described.
     ComputeError, MemoryError, KeyboardInterrupt
     """
     if isinstance(mesh, Result):
-        points = mesh.vertices
-        sphere = _start(mesh, cuts_handles=True)
-    elif isinstance(mesh, (SphereMap, Remeshed)):
-        points, sphere = mesh.vertices, mesh.directions
-    else:
+        mesh = sphere_map(mesh)
+    if not isinstance(mesh, (SphereMap, Remeshed)):
         raise InvalidInput(
             f"a {type(mesh).__name__} is no Result, SphereMap or Remeshed; give the mesh of "
             "reconstruct() or the map of sphere_map()"
         )
     fields = _core.texture_coordinates(
-        points if isinstance(mesh, Result) else None, mesh.triangles, sphere,
-        chart=arguments.choice("chart", chart, get_args(ChartName)), margin=arguments.real("margin", margin),
+        mesh.triangles, mesh.directions, chart=arguments.choice("chart", chart, get_args(ChartName)),
+        margin=arguments.real("margin", margin),
     )
-    vertices = np.einsum("ijk,ij->ik", points[fields["source_vertices"]], fields["source_weights"])
-    vertices[: len(points)] = points  # without rounding
+    vertices = np.einsum("ijk,ij->ik", mesh.vertices[fields["source_vertices"]], fields["source_weights"])
+    vertices[: len(mesh.vertices)] = mesh.vertices  # without rounding
     return TextureCoordinates(vertices=vertices, **fields)
