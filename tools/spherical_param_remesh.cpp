@@ -1,5 +1,5 @@
-// pcl_spherical_param_remesh: meshes a point cloud anew, with regular triangles or as many points
-// as one likes, and makes and reads geometry images and series of spherical harmonics.
+// pcl_spherical_param_remesh: meshes a point cloud anew, with regular triangles and any number of
+// points, and makes and reads geometry images and series of spherical harmonics.
 
 #include "common/errors.h"
 #include "common/file_formats.h"
@@ -28,19 +28,14 @@ namespace {
 using namespace spherical_param;
 using namespace spherical_param::tools;
 
-/// Where the points are.
-enum class Sampling { Icosahedral, Octahedral, Even };
-
-const Names<Sampling> sampling_names = {
-    {"icosahedral", Sampling::Icosahedral},
-    {"octahedral", Sampling::Octahedral},
-    {"even", Sampling::Even},
+const Names<SphereGrid> grid_names = {
+    {"icosahedral", SphereGrid::Icosahedral},
+    {"octahedral", SphereGrid::Octahedral},
 };
 
 /// Of geometry images.
 constexpr const char* image_extensions = " .tif .tiff";
 constexpr int longest_side = 16385;
-constexpr double most_even_points = 1 << 24;
 constexpr double most_vertices = 1 << 28;
 
 ToolText toolText() {
@@ -50,8 +45,7 @@ ToolText toolText() {
           "  input:  " +
               extensionsFor(FileUse::ReadCloud) +
               ", or a geometry image: .tif .tiff\n  output: a mesh: " +
-              extensionsFor(FileUse::WriteMesh) + "\n          with -grid even a cloud: " +
-              extensionsFor(FileUse::WriteCloud) + "\n          a geometry image: .tif .tiff\n",
+              extensionsFor(FileUse::WriteMesh) + "\n          a geometry image: .tif .tiff\n",
           {{"A mesh of even triangles on an icosahedral grid", "scan.ply even.ply -points 2562"},
            {"A geometry image", "scan.ply geometry.tif"},
            {"A mesh of that image", "geometry.tif mesh.ply"}}};
@@ -61,7 +55,7 @@ ToolText toolText() {
 struct Settings {
   std::string input;
   std::string output;
-  Sampling sampling = Sampling::Icosahedral;  ///< octahedral for an image
+  SphereGrid grid = SphereGrid::Icosahedral;  ///< octahedral for an image
   std::optional<std::size_t> points;          ///< none: as many as the mesh has vertices
   std::optional<int> side;                    ///< none: as the points say
   SurfaceFit fit = SurfaceFit::Smooth;
@@ -75,21 +69,18 @@ struct Settings {
   /// Whether a geometry image becomes a mesh; else the input is a cloud.
   bool readsImage() const { return isGeometryImageFile(input); }
   bool writesImage() const { return isGeometryImageFile(output); }
-  bool makesCloud() const { return !readsImage() && sampling == Sampling::Even; }
   /// Whether vertices are slid along the surface, so that triangles do not intersect.
-  bool slides() const { return !readsImage() && !series && sampling != Sampling::Even; }
+  bool slides() const { return !readsImage() && !series; }
   bool needsHarmonics() const { return series || !harmonics.empty(); }
   int threads() const { return product.map.threads; }
 };
 
 OptionTable ownOptions(Settings& settings) {
   return {usedIf([&] { return !settings.readsImage() && !settings.writesImage(); },
-                 choiceOption("grid", "of the points: two of meshes; even: of a cloud",
-                              settings.sampling, sampling_names)),
-          numberOption(
-              "points",
-              "number of points; for meshes the nearest possible; unset: as the mesh of the cloud",
-              settings.points, 4, settings.makesCloud() ? most_even_points : most_vertices),
+                 choiceOption("grid", "of the points", settings.grid, grid_names)),
+          numberOption("points",
+                       "number of points, the nearest possible; unset: as the mesh of the cloud",
+                       settings.points, 4, most_vertices),
           numberOption("side",
                        "pixels along the sides of a geometry image, odd; unset: as -points says",
                        settings.side, 3, longest_side),
@@ -137,9 +128,6 @@ void checkCombination(const CommandLine& command_line, Settings& settings) {
   } else {
     command_line.refuse({"side"}, "an output other than a geometry image", "one ending in .tif");
   }
-  if (settings.sampling == Sampling::Even) {
-    command_line.refuse({"sphere", "series"}, "-grid even", "-grid icosahedral");
-  }
   if (!settings.needsHarmonics()) {
     command_line.refuse({"degree"}, "neither -harmonics nor -series", "-harmonics FILE");
   }
@@ -149,7 +137,6 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   const std::vector<std::string> files = filesOf(command_line, toolText());
   settings.input = files[0];
   settings.output = files[1];
-  command_line.apply(ownOptions(settings));  // a cloud has fewer points
   if (!settings.readsImage()) {
     requireFormat(settings.input, FileUse::ReadCloud, image_extensions);
   } else if (settings.writesImage()) {
@@ -157,8 +144,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
                      "give an output with one of " + extensionsFor(FileUse::WriteMesh));
   }
   if (!settings.writesImage()) {
-    requireFormat(settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh,
-                  image_extensions);
+    requireFormat(settings.output, FileUse::WriteMesh, image_extensions);
   }
   if (!settings.sphere.empty()) {
     requireFormat(settings.sphere, FileUse::WriteMesh);
@@ -174,7 +160,7 @@ void parse(const CommandLine& command_line, Settings& settings) {
   parseProductOptions(command_line, settings.product);
   checkCombination(command_line, settings);
   if (settings.writesImage()) {
-    settings.sampling = Sampling::Octahedral;
+    settings.grid = SphereGrid::Octahedral;
   }
 }
 
@@ -185,7 +171,7 @@ std::vector<std::string> outputsOf(const Settings& settings) {
 
 /// What is written, with its quality.
 struct Output {
-  ResampledMesh mesh;         ///< in single precision, as it is written; a cloud has no triangles
+  ResampledMesh mesh;         ///< in single precision, as it is written
   std::vector<Color> colors;  ///< of its points, or none
   GeometryImage image;        ///< if one is read or written
   int frequency = 0;          ///< of the grid
@@ -203,17 +189,14 @@ struct Output {
     return std::to_string(image.side) + " x " + std::to_string(image.side) + " pixels";
   }
   std::size_t pointCount() const { return static_cast<std::size_t>(mesh.points.cols()); }
-  bool isCloud() const { return mesh.triangles.cols() == 0; }
 };
 
 GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurface& surface) {
-  const SphereGrid kind =
-      settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
-  int frequency = gridFrequency(kind, points, surface);
+  int frequency = gridFrequency(settings.grid, points, surface);
   if (settings.writesImage()) {
     frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
   }
-  return makeGridSphere(kind, frequency);
+  return makeGridSphere(settings.grid, frequency);
 }
 
 /// Samples the surface as the user wants it.
@@ -221,21 +204,13 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
               Output& output) {
   const std::size_t wanted =
       settings.points ? *settings.points : static_cast<std::size_t>(mapped.points().cols());
-  if (settings.makesCloud()) {
-    SurfacePoints points =
-        sampleEvenly(surface, wanted, settings.product.reconstruction.options.seed);
-    output.mesh.points = std::move(points.points);
-    output.mesh.normals = std::move(points.normals);
-    output.colors = truncated(colorsAt(mapped, points.locations, 0.5));
-  } else {
-    const GridSphere grid = gridOf(settings, wanted, surface);
-    output.frequency = grid.frequency;
-    output.mesh = resampleSurface(surface, grid);
-    if (settings.series) {
-      output.mesh.points =
-          evaluateSphericalHarmonics(*output.harmonics, output.mesh.directions, settings.threads());
-      output.mesh.normals.resize(3, 0);
-    }
+  const GridSphere grid = gridOf(settings, wanted, surface);
+  output.frequency = grid.frequency;
+  output.mesh = resampleSurface(surface, grid);
+  if (settings.series) {
+    output.mesh.points =
+        evaluateSphericalHarmonics(*output.harmonics, output.mesh.directions, settings.threads());
+    output.mesh.normals.resize(3, 0);
   }
 }
 
@@ -243,20 +218,18 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
 void verify(const Settings& settings, const MappedCloud& mapped, Output& output, Console& console) {
   console.begin("verify");
   const ResampledMesh& mesh = output.mesh;
-  if (!output.isCloud()) {
-    output.topology = checkTopology(mesh.triangles, output.pointCount(), settings.threads());
-    output.measures = measureMesh(mesh.points, mesh.triangles, settings.threads());
-    Execution execution;
-    execution.threads = settings.threads();
-    execution.progress = console.progress(0.5);
-    const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
-    output.self_intersections = pairs.size();
-    output.intersecting_triangles = countTriangles(pairs);
-    if (!settings.readsImage() && output.topology.closed) {
-      const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
-                                  {SurfaceFit::Linear, settings.threads()});
-      output.distance = distanceFromMesh(mapped.points(), mapped.map.sphere, surface);
-    }
+  output.topology = checkTopology(mesh.triangles, output.pointCount(), settings.threads());
+  output.measures = measureMesh(mesh.points, mesh.triangles, settings.threads());
+  Execution execution;
+  execution.threads = settings.threads();
+  execution.progress = console.progress(0.5);
+  const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
+  output.self_intersections = pairs.size();
+  output.intersecting_triangles = countTriangles(pairs);
+  if (!settings.readsImage() && output.topology.closed) {
+    const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
+                                {SurfaceFit::Linear, settings.threads()});
+    output.distance = distanceFromMesh(mapped.points(), mapped.map.sphere, surface);
   }
   output.stages.push_back(console.end());
 }
@@ -288,7 +261,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
         untangle(surface, output.mesh, {!settings.writesImage(), settings.threads()});
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
   }
-  if (!output.isCloud() && !mapped.colors.empty()) {
+  if (!mapped.colors.empty()) {
     output.colors =
         truncated(colorsAt(mapped, surface.evaluate(output.mesh.directions).locations, 0.5));
   }
@@ -324,9 +297,6 @@ std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& map
 
 /// Whether the output is sound, and what the mesh of the cloud leaves open, fills, cuts or joins.
 std::string verdictOf(const Output& output, const MappedCloud& mapped) {
-  if (output.isCloud()) {
-    return "Points spread evenly over the surface.";
-  }
   if (output.self_intersections == 0) {
     const bool is_of_sound_mesh =
         !mapped.cloud.result.surfaces.empty() && mapped.cloud.surface().intersecting_triangles == 0;
@@ -377,22 +347,20 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   if (!settings.readsImage()) {
     addMapToJson(mapped, json);
   }
-  const bool is_cloud = output.isCloud();
-  const auto unless = [](bool idle, const Json& value) { return idle ? Json(nullptr) : value; };
-  json["grid"] = {{"kind", nameOf(settings.readsImage() ? Sampling::Octahedral : settings.sampling,
-                                  sampling_names)},
-                  {"frequency", unless(is_cloud, output.frequency)},
-                  {"side", unless(output.image.side == 0, output.image.side)}};
+  json["grid"] = {
+      {"kind", nameOf(settings.readsImage() ? SphereGrid::Octahedral : settings.grid, grid_names)},
+      {"frequency", output.frequency},
+      {"side", output.image.side == 0 ? Json(nullptr) : Json(output.image.side)}};
   json["points"] = output.pointCount();
   json["triangles"] = output.mesh.triangles.cols();
-  json["closed"] = unless(is_cloud, output.topology.closed);
-  json["manifold"] = unless(is_cloud, output.topology.manifold());
-  json["oriented"] = unless(is_cloud, output.topology.oriented);
-  json["components"] = unless(is_cloud, output.topology.components);
+  json["closed"] = output.topology.closed;
+  json["manifold"] = output.topology.manifold();
+  json["oriented"] = output.topology.oriented;
+  json["components"] = output.topology.components;
   json["genus"] = output.topology.genus ? Json(*output.topology.genus) : Json(nullptr);
-  json["volume"] = unless(is_cloud, output.measures.volume);
-  json["area"] = unless(is_cloud, output.measures.area);
-  json["self_intersections"] = unless(is_cloud, output.self_intersections);
+  json["volume"] = output.measures.volume;
+  json["area"] = output.measures.area;
+  json["self_intersections"] = output.self_intersections;
   const auto& untangling = output.untangling;
   json["untangling"] = !untangling ? Json()
                                    : Json({{"self_intersections_before", untangling->before},

@@ -1,11 +1,9 @@
 #include "spherical_param/map/resampling.h"
 
-#include "bit_mixing.h"
 #include "caps.h"
 #include "corner_table.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "sample_elimination.h"
 #include "spherical_param/errors.h"
 #include "triangle_geometry.h"
 
@@ -15,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -223,47 +220,6 @@ private:
   Index f_;
 };
 
-// --- Random points -------------------------------------------------------------------------------
-
-/// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
-/// section 4); fewer where they would take much memory.
-std::size_t candidateCount(std::size_t count) {
-  constexpr std::size_t many = std::size_t{1} << 20;
-  return (count <= many ? 5 : 3) * count;
-}
-
-/// A number in [0, 1), which follows from its place alone, whichever thread asks.
-double randomNumber(std::uint64_t place) {
-  return static_cast<double>(internal::splitmix64(place) >> 11U) * 0x1p-53;
-}
-
-/// Points of a surface by area: one from each of as many parts of equal area.
-SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  const Triangles& triangles = surface.triangles();
-  std::vector<double> sums{0.0};  // of the areas up to each triangle; caps are the last ones
-  for (Index t = 0; t < triangles.cols() && !surface.isCap(t); ++t)
-    sums.push_back(sums.back() + 0.5 * internal::areaNormal(surface.points(), triangles, t).norm());
-  const std::uint64_t start = internal::splitmix64(seed);
-  const auto n = static_cast<Index>(count);
-  SurfacePoints result{Positions(3, n), Positions(3, n), std::vector<SphereLocation>(count)};
-  internal::forEachIndex(count, 0, [&](Index i) {
-    const std::uint64_t first = start + 3 * static_cast<std::uint64_t>(i);
-    const double place = (i + randomNumber(first)) / n * sums.back();
-    // The last triangle that begins at or before the place: one with an area.
-    const auto next = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
-    SphereLocation location;
-    location.triangle = static_cast<Index>(next - sums.begin() - 1);
-    const double root = std::sqrt(randomNumber(first + 1));
-    const double fraction = randomNumber(first + 2);
-    location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
-    const SurfaceSample sample = surface.evaluate(location);
-    result.points.col(i) = sample.position;
-    result.normals.col(i) = sample.normal;
-    entry(result.locations, i) = location;
-  });
-  return result;
-}
-
 void checkSide(const std::string& function, int side) {
   internal::checkRange(function + ": side", side, 3, 16385);
   if (side % 2 == 0)
@@ -329,19 +285,6 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
   mesh.points = std::move(samples.positions);
   mesh.normals = std::move(samples.normals);
   return mesh;
-}
-
-SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  internal::checkRange("sampleEvenly: count", count, 1, std::size_t{1} << 24U);
-  if (!(surface.area() > 0.0))
-    throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
-  const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
-  const std::vector<Index> kept =
-      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
-  SurfacePoints result{all.points(Eigen::all, kept), all.normals(Eigen::all, kept), {}};
-  for (const Index i : kept)
-    result.locations.push_back(entry(all.locations, i));
-  return result;
 }
 
 Positions geometryImageDirections(int side) {

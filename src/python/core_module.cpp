@@ -17,7 +17,6 @@
 #include <pybind11/stl.h>
 
 #include <cctype>
-#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <tuple>
@@ -143,31 +142,8 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
   return result;
 }
 
-Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uint32_t seed,
-                      Listener& listener) {
-  Remeshed result;
-  SurfacePoints even = sampleEvenly(surface, points, seed);
-  listener.step("resample", 1.0);
-  result.mesh.points = std::move(even.points);
-  result.mesh.normals = std::move(even.normals);
-  result.mesh.triangles.resize(3, 0);
-  result.locations = std::move(even.locations);
-  result.mesh.directions.resize(3, result.mesh.points.cols());
-  for (std::size_t i = 0; i < result.locations.size(); ++i) {
-    const SphereLocation& location = result.locations[i];
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-    for (Eigen::Index corner = 0; corner < 3; ++corner)
-      direction += location.weights[corner] *
-                   surface.sphere().col(surface.triangles()(corner, location.triangle));
-    result.mesh.directions.col(static_cast<Eigen::Index>(i)) = direction.normalized();
-  }
-  return result;
-}
-
 py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::size_t count,
-                       const std::string& fit, std::uint32_t seed, int threads,
-                       const py::object& progress) {
-  const bool is_even = grid == "even";
+                       const std::string& fit, int threads, const py::object& progress) {
   const SphereGrid kind = grid == "octahedral" ? SphereGrid::Octahedral : SphereGrid::Icosahedral;
   const SurfaceFit surface_fit = fitOf(fit);
   Listener listener(progress);
@@ -176,18 +152,16 @@ py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::siz
     const SphereSurface surface = surfaceOf(mesh, surface_fit, threads);
     listener.step("surface", 1.0);
     listener.step("resample", 0.0);
-    return is_even ? spreadEvenly(surface, count, seed, listener)
-                   : remeshOnGrid(surface, kind, count, threads, listener);
+    return remeshOnGrid(surface, kind, count, threads, listener);
   });
-  py::dict dict("vertices"_a = toArray(remeshed.mesh.points),
-                "triangles"_a = toArray(remeshed.mesh.triangles),
-                "normals"_a = toArray(remeshed.mesh.normals),
-                "directions"_a = toArray(remeshed.mesh.directions),
-                "frequency"_a = is_even ? py::none() : py::cast(remeshed.frequency),
-                "self_intersections"_a = toArray(remeshed.self_intersections),
-                "self_intersections_before"_a = remeshed.untangling.before,
-                "moved"_a = remeshed.untangling.moved,
-                "flipped_edges"_a = remeshed.untangling.flips);
+  py::dict dict(
+      "vertices"_a = toArray(remeshed.mesh.points),
+      "triangles"_a = toArray(remeshed.mesh.triangles),
+      "normals"_a = toArray(remeshed.mesh.normals),
+      "directions"_a = toArray(remeshed.mesh.directions), "frequency"_a = remeshed.frequency,
+      "self_intersections"_a = toArray(remeshed.self_intersections),
+      "self_intersections_before"_a = remeshed.untangling.before,
+      "moved"_a = remeshed.untangling.moved, "flipped_edges"_a = remeshed.untangling.flips);
   addLocations(remeshed.locations, "source", dict);
   return dict;
 }
@@ -299,7 +273,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("measure_map_distortion", &measureDistortion, "points"_a, "triangles"_a, "sphere"_a,
              py::kw_only(), "threads"_a);
   module.def("remesh", &remeshSurface, "mesh"_a, py::kw_only(), "grid"_a, "count"_a, "fit"_a,
-             "seed"_a, "threads"_a, "progress"_a);
+             "threads"_a, "progress"_a);
   module.def("texture_coordinates", &textureAtlas, "triangles"_a, "sphere"_a, py::kw_only(),
              "chart"_a, "margin"_a);
 }

@@ -176,10 +176,6 @@ void addMaps(const Add& add) {
       numbers.add(location.weights);
     return numbers;
   });
-  add("sampleEvenly()", {}, [](const Inputs& in, const Execution& e) {
-    const SurfacePoints of = sampleEvenly(in.few.surface(SurfaceFit::Linear, e.threads), 1000, 7);
-    return Numbers(of.points, of.normals);
-  });
   add("spherical harmonics", {}, [](const Inputs& in, const Execution& e) {
     const SphericalHarmonics of = computeSphericalHarmonics(in.few.surface(), 12, e.threads);
     return Numbers(of.coefficients, of.rms_residual,

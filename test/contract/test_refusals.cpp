@@ -200,12 +200,8 @@ TEST(Refusals, OfResampledMeshesThatDoNotFit) {
     });
 }
 
-TEST(Refusals, OfSamplesAndSeriesOutOfRange) {
+TEST(Refusals, OfSeriesOutOfRange) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
-  for (const std::size_t count : {std::size_t{0}, (std::size_t{1} << 24) + 1})
-    expectRefused("sampleEvenly()", [&] { sampleEvenly(surface, count); });
-  const SphereSurface point = surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); });
-  expectRefused("without area", [&] { sampleEvenly(point, 5); });
   const Vector3d x = Vector3d::UnitX();
   for (const int degree : {-1, 513}) {
     expectRefused("degree", [&] { sphericalHarmonicsAt(x, degree); });

@@ -195,10 +195,6 @@ void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
   } else if (how == 2) {
     computeSphericalHarmonics(surface, atMost(8, bytes.integer(), 512), bytes.integerOr(0));
   } else if (how == 3) {
-    const SurfacePoints samples = sampleEvenly(surface, bytes.byte(), bytes.byte());
-    require(samples.locations.size() == static_cast<std::size_t>(samples.points.cols()),
-            "each sample has a place");
-  } else if (how == 4) {
     const int side = atMost(17, bytes.integer() | 1, 16385);
     meshOfGeometryImage(makeGeometryImage(surface, side));
   } else {

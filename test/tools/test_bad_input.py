@@ -114,10 +114,9 @@ class BadInput(ToolTest):
             "scan sphere out.pcd": {
                 "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
                 "-seed -1": "option -seed: '-1'"},
-            "remesh in.xyz out.xyz -grid even": {"-points 3": "-points", "-points 16777217": "-points"},
             "remesh in.xyz out.tif": {"-side 10": "10 is even", "-side 1": "-side"},
             "remesh in.xyz out.ply": {
-                "-grid cubic": "'cubic' is not allowed", "-harmonics c.json -degree 513": "-degree",
+                "-grid cubic": "'cubic' is not allowed", "-points 3": "-points", "-harmonics c.json -degree 513": "-degree",
                 "-map-sweeps 1001": "-map-sweeps"},
             "morph in.ply in.xyz m.ply": {
                 "-frames 1": "-frames", "-align yes": "option -align: 'yes'",
@@ -148,9 +147,8 @@ class BadInput(ToolTest):
         })  # fmt: skip
         for line, options in {
             "remesh in.xyz out.ply": ["-side 9", "-degree 5", "-area-weight 1 -map-sweeps 0"],
-            "remesh in.xyz out.ply -grid even": ["-series", "-sphere s.ply"],
             "remesh in.xyz out.tif": ["-side 9 -points 9", "-series", "-offset 1,2,3", "-ascii"],
-            "remesh in.tif out.ply": ["-points 9", "-fit linear", "-k 9", "-map-sweeps 2", "-grid even", "-series",
+            "remesh in.tif out.ply": ["-points 9", "-fit linear", "-k 9", "-map-sweeps 2", "-series",
                                       "-harmonics c.json"],
             "morph in.ply in.xyz m.ply": ["-samples 100"],
             "texture in.ply out.glb": ["-ascii"],

@@ -80,16 +80,9 @@ class RemeshTool(ToolTest):
                 self.assertNotIn("nx", sphere)
                 self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
 
-    def test_even_clouds_have_that_many_points_on_the_surface(self):
-        cloud = self.remeshed("-grid", "even", "-points", 400)
-        self.assertEqual([len(cloud.points), len(cloud.triangles)], [400, 0])
-        self.check_on_the_surface(cloud)
-
     def test_output_has_as_many_points_as_the_mesh_unless_told(self):
         self.assertEqual(report_of("remesh", "in.ply", "out.ply")["points"], 492)
         self.assertEqual(report_of("remesh", "in.ply", "out.tif")["points"], 486)
-        self.check_entries(report_of("remesh", "in.ply", "out.pcd", "-grid", "even"),
-                           {"points": 500, "triangles": 0, "closed": None})  # fmt: skip
 
     def test_mesh_of_a_geometry_image_is_the_octahedral_grid_bit_for_bit(self):
         run("remesh", "in.ply", "image.tif", "-points", 1000)

@@ -5,7 +5,6 @@
 #include "spherical_param/types.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace spherical_param {
@@ -117,24 +116,6 @@ struct UntanglingReport {
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
                           const UntanglingOptions& options = {});
-
-/// Points spread evenly over a surface, in space.
-struct SurfacePoints {
-  Positions points;                       ///< 3 x n [unit of the input]
-  Positions normals;                      ///< 3 x n, unit vectors, outward
-  std::vector<SphereLocation> locations;  ///< n: where they are in the mesh
-};
-
-/// Spreads points evenly over a surface: random points by area, from which the most crowded are
-/// eliminated (Yuksel 2015, "Sample elimination for generating Poisson disk sample sets").
-///
-/// \param surface with its map.
-/// \param count   number of points, 1 and up, up to 2^24.
-/// \param seed    of the random points.
-/// \return the points, with their normals and places.
-/// \throw InvalidInput for another count.
-/// The same, bit by bit, for the same seed and any number of threads.
-SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
 
 /// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
 /// Hoppe 2003): side x side pixels, side = 2 f + 1, on the square of an unfolded octahedron. Pixels
