@@ -204,8 +204,7 @@ std::size_t flipAround(Pairs& pairs, ResampledMesh& mesh, int threads) {
 
 }  // namespace
 
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
-                          const UntanglingOptions& options) {
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int requested) {
   const Eigen::Index n = mesh.points.cols();
   if (mesh.normals.cols() != n || mesh.directions.cols() != n)
     throw InvalidInput("untangle: " + std::to_string(n) + " points, " +
@@ -214,10 +213,10 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
                        " directions; give a mesh of resampleSurface()");
   internal::checkTriangles("untangle", mesh.triangles, n);
   const std::size_t count = internal::columnCount(mesh.points);
-  const int threads = internal::threadCount(options.threads, count);
+  const int threads = internal::threadCount(requested, count);
   Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
   UntanglingReport report = Sliding(surface, mesh, threads).run(pairs);
-  if (options.flips && !pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
+  if (!pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
     report.flips = flipAround(pairs, mesh, threads);
   report.after = pairs.size();
   return report;

@@ -166,7 +166,7 @@ pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOption
   spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
       surface, spherical_param::makeGridSphere(
                    options.grid, spherical_param::gridFrequency(options.grid, wanted, surface)));
-  spherical_param::untangle(surface, resampled, {true, threads});
+  spherical_param::untangle(surface, resampled, threads);
   pcl::PolygonMesh output;
   output.cloud = cloudOf(resampled.points, resampled.normals);
   output.polygons = polygonsOf(resampled.triangles);

@@ -134,7 +134,7 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
   result.mesh = resampleSurface(surface, grid);
   listener.step("resample", 1.0);
   listener.step("untangle", 0.0);
-  result.untangling = untangle(surface, result.mesh, {true, threads});
+  result.untangling = untangle(surface, result.mesh, threads);
   listener.step("untangle", 1.0);
   result.locations = surface.evaluate(result.mesh.directions).locations;
   result.self_intersections =

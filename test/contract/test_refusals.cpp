@@ -162,7 +162,7 @@ TEST(Refusals, OfCapsAndPlacesThatDoNotFit) {
     expectRefused("location", [&] { surface.evaluate(SphereLocation{t, Vector3d::UnitX()}); });
 }
 
-TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
+TEST(Refusals, OfGridsOfWrongSizes) {
   for (const SphereGrid kind : {SphereGrid::Icosahedral, SphereGrid::Octahedral}) {
     // The largest that there is, for any number.
     const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
@@ -173,18 +173,6 @@ TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
       expectRefused("makeGridSphere()", [&] { makeGridSphere(kind, frequency); });
     }
   }
-  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
-  for (const int side : {-3, 0, 1, 2, 4, 16386, 16387}) {
-    expectRefused("geometryImageDirections()", [&] { geometryImageDirections(side); });
-    expectRefused("makeGeometryImage()", [&] { makeGeometryImage(surface, side); });
-    expectRefused("side", [&] { meshOfGeometryImage({side, Positions(3, 9)}); });
-  }
-  GeometryImage image = makeGeometryImage(surface, 5);
-  image.positions(1, 7) = kInfinity;
-  expectRefused("pixel", [&] { meshOfGeometryImage(image); });
-  expectRefused("pixels", [&] { meshOfGeometryImage({5, Positions::Zero(3, 24)}); });
-  const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 3);
-  expectRefused("grid", [&] { geometryImageOfMesh(resampleSurface(surface, grid)); });
 }
 
 TEST(Refusals, OfResampledMeshesThatDoNotFit) {
@@ -195,9 +183,7 @@ TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   meshes[1].triangles(0, 0) = 38;
   meshes[2].normals = good.normals.leftCols(5);
   for (ResampledMesh& mesh : meshes)
-    expectRefused("untangle()", [&] {
-      untangle(surface, mesh, {true, &mesh == &meshes.back() ? -1 : 0});
-    });
+    expectRefused("untangle()", [&] { untangle(surface, mesh, &mesh == &meshes.back() ? -1 : 0); });
 }
 
 TEST(Refusals, OfSeriesOutOfRange) {

@@ -163,7 +163,7 @@ SphereSurface surfaceFrom(Bytes& bytes, const Positions& points, Watch& watch) {
   return {points, mapped.triangles, mapped.sphere, options};
 }
 
-void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool flips) {
+void fuzzResampling(Bytes& bytes, const SphereSurface& surface) {
   const auto grid = bytes.choice<SphereGrid>(2);
   GridSphere directions = makeGridSphere(grid, atMost(4, bytes.integerOr(2), 1 << 15));
   if (bytes.oneIn(8))
@@ -171,10 +171,9 @@ void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool flips) {
   ResampledMesh mesh = resampleSurface(surface, directions);
   if (bytes.oneIn(8))
     mesh.points(bytes.byte() % 3, bytes.byte() % mesh.points.cols()) = bytes.real();
-  untangle(surface, mesh, {flips, bytes.integerOr(0)});
+  untangle(surface, mesh, bytes.integerOr(0));
   require(isSphere(mesh.triangles, mesh.points) || !isSphere(directions.triangles, mesh.points),
           "the remeshed surface is a sphere");
-  geometryImageOfMesh(mesh);
 }
 
 void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
@@ -195,10 +194,7 @@ void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
   } else if (how == 2) {
     computeSphericalHarmonics(surface, atMost(8, bytes.integer(), 512), bytes.integerOr(0));
   } else if (how == 3) {
-    const int side = atMost(17, bytes.integer() | 1, 16385);
-    meshOfGeometryImage(makeGeometryImage(surface, side));
-  } else {
-    fuzzResampling(bytes, surface, how == 6);
+    fuzzResampling(bytes, surface);
   }
 }
 

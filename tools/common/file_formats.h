@@ -24,8 +24,7 @@ std::string extensionOf(const std::string& path);
 /// The format of a file that is wanted for a use: by its extension; a file of points that is text,
 /// or whose extension is not known, by its content.
 ///
-/// \param others further extensions that the tool takes, e.g. " .tif".
 /// \throw UsageError if the extension is unknown or its format cannot be used that way.
-FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others = "");
+FileFormat requireFormat(const std::string& path, FileUse use);
 
 }  // namespace spherical_param::tools

@@ -51,8 +51,6 @@ std::size_t gridVertices(SphereGrid grid, int frequency);
 
 /// A regular triangulation of the sphere.
 ///
-/// The octahedral one has its directions where GeometryImage has its pixels.
-///
 /// \param grid the kind of grid.
 /// \param frequency parts of each edge of the solid.
 /// \return the sphere.
@@ -84,12 +82,6 @@ SphereMapOptions mapOptionsForResampling();
 /// \return the mesh, with the triangles of the grid; of a closed surface with all of them.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
-/// Parameters of untangle().
-struct UntanglingOptions {
-  bool flips = true;  ///< flip edges where sliding is not enough; false: the triangles stay
-  int threads = 0;    ///< 0: one for each processor; [0, 1024]
-};
-
 /// Report of untangle().
 struct UntanglingReport {
   std::size_t before = 0;  ///< pairs of triangles that intersected
@@ -110,52 +102,11 @@ struct UntanglingReport {
 ///
 /// \param surface that the mesh was sampled from.
 /// \param mesh    of resampleSurface(); changed in place. The best result of sliding is kept.
-/// \param options whether to flip edges, threads
+/// \param threads 0: one for each processor; [0, 1024]
 /// \return the report.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
-                          const UntanglingOptions& options = {});
-
-/// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
-/// Hoppe 2003): side x side pixels, side = 2 f + 1, on the square of an unfolded octahedron. Pixels
-/// on the border coincide in pairs: (0, j) and (0, side - 1 - j), likewise on the other sides; the
-/// four corners coincide.
-struct GeometryImage {
-  int side = 0;         ///< pixels along each side; odd, 3 and up
-  Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
-};
-
-/// The direction of each pixel of a geometry image.
-///
-/// \param side pixels along each side.
-/// \return 3 x side^2, unit vectors, row by row.
-/// \throw InvalidInput for a side that is even or below 3, or above 16385.
-Positions geometryImageDirections(int side);
-
-/// The geometry image of a surface.
-///
-/// \param surface with its map.
-/// \param side    pixels along each side.
-/// \return the image.
-/// \throw InvalidInput as geometryImageDirections().
-GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
-
-/// The geometry image of a mesh with the grid of makeGridSphere() for SphereGrid::Octahedral, from
-/// resampleSurface() or untangle().
-///
-/// \param mesh with such vertices, which may have slid.
-/// \return the image, whose pixels are the vertices.
-/// \throw InvalidInput for another number of vertices.
-GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
-
-/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Coinciding pixels of
-/// the border are averaged.
-///
-/// \param image of any origin.
-/// \return the mesh, with normals.
-/// \throw InvalidInput for a wrong side or number of pixels, or positions that are not finite.
-ResampledMesh meshOfGeometryImage(const GeometryImage& image);
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
 
 /// @}
 
