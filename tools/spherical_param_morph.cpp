@@ -284,11 +284,7 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
   json["files"] = settings.files;
   json["vertices"] = morph.vertexCount();
   json["triangles"] = morph.result.triangles.cols();
-  json["closed"] = morph.topology.closed;
-  json["manifold"] = morph.topology.manifold();
-  json["oriented"] = morph.topology.oriented;
-  json["components"] = morph.topology.components;
-  json["genus"] = morph.topology.genus ? Json(*morph.topology.genus) : Json(nullptr);
+  addToJson(morph.topology, json);
   json["rotation"] = Json::array();
   for (Eigen::Index row = 0; row < 3; ++row) {
     json["rotation"].push_back(toJson(Eigen::Vector3d(morph.result.rotation.row(row))));

@@ -206,12 +206,8 @@ std::string verdictOf(const Output& output, const MappedCloud& mapped) {
          " intersect.";
 }
 
-/// The series, one line for each coefficient.
-std::string harmonicsText(const Settings& settings, const SphericalHarmonics& harmonics) {
-  const auto dump = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
-  const Json head = {
+Json harmonicsToJson(const Settings& settings, const SphericalHarmonics& harmonics) {
+  Json json = {
       {"version", SPHERICAL_PARAM_VERSION},
       {"input", settings.input},
       {"degree", harmonics.degree},
@@ -221,19 +217,13 @@ std::string harmonicsText(const Settings& settings, const SphericalHarmonics& ha
        "without the phase (-1)^m; m > 0 with cos(m phi), m < 0 with sin(|m| phi); phi is the "
        "longitude, from x to y, and z = cos(theta)"},
       {"rms_residual", harmonics.rms_residual}};
-  std::string text = "{\n";
-  for (const auto& [name, value] : head.items()) {
-    text += "  \"" + name + "\": " + dump(value) + ",\n";
-  }
-  text += "  \"coefficients\": [\n";
   for (int l = 0; l <= harmonics.degree; ++l) {
     for (int m = -l; m <= l; ++m) {
       const Eigen::Vector3d xyz = harmonics.coefficients.col(l * l + l + m);
-      text += "    " + dump({{"l", l}, {"m", m}, {"xyz", toJson(xyz)}}) +
-              (m == l && l == harmonics.degree ? "\n" : ",\n");
+      json["coefficients"].push_back({{"l", l}, {"m", m}, {"xyz", toJson(xyz)}});
     }
   }
-  return text + "  ]\n}\n";
+  return json;
 }
 
 Json report(Settings settings, const MappedCloud& mapped, const Output& output) {
@@ -247,11 +237,7 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["grid"] = {{"kind", nameOf(settings.grid, grid_names)}, {"frequency", output.frequency}};
   json["points"] = output.pointCount();
   json["triangles"] = output.mesh.triangles.cols();
-  json["closed"] = output.topology.closed;
-  json["manifold"] = output.topology.manifold();
-  json["oriented"] = output.topology.oriented;
-  json["components"] = output.topology.components;
-  json["genus"] = output.topology.genus ? Json(*output.topology.genus) : Json(nullptr);
+  addToJson(output.topology, json);
   json["volume"] = output.measures.volume;
   json["area"] = output.measures.area;
   json["self_intersections"] = output.self_intersections;
@@ -305,7 +291,7 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
     run.write(settings.sphere, sphere, console.updates(0.5, 1.0));
   }
   if (!settings.harmonics.empty()) {
-    run.open(settings.harmonics).write(harmonicsText(settings, *output.harmonics));
+    run.open(settings.harmonics).write(textOf(harmonicsToJson(settings, *output.harmonics)));
   }
   output.stages.push_back(console.end());
 }

@@ -117,52 +117,38 @@ void addLocations(const std::vector<SphereLocation>& locations, const char* of, 
   dict[py::str(of + std::string("_weights"))] = toArray(weights);
 }
 
-/// What remeshing gives, before it is taken to Python.
-struct Remeshed {
+py::dict remeshSurface(const MappedMesh& mapped, const std::string& grid, std::size_t count,
+                       const std::string& fit, int threads, const py::object& progress) {
+  const SphereGrid kind = valueOf<SphereGrid>(
+      grid, {{"icosahedral", SphereGrid::Icosahedral}, {"octahedral", SphereGrid::Octahedral}});
+  const SurfaceFit surface_fit = fitOf(fit);
   ResampledMesh mesh;
-  std::vector<SphereLocation> locations;
-  std::vector<std::array<Index, 2>> self_intersections;
   int frequency = 0;
   UntanglingReport untangling;
-};
-
-Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t points,
-                      int threads, Listener& listener) {
-  Remeshed result;
-  const GridSphere grid = makeGridSphere(kind, gridFrequency(kind, points, surface));
-  result.frequency = grid.frequency;
-  result.mesh = resampleSurface(surface, grid);
-  listener.step("resample", 1.0);
-  listener.step("untangle", 0.0);
-  result.untangling = untangle(surface, result.mesh, threads);
-  listener.step("untangle", 1.0);
-  result.locations = surface.evaluate(result.mesh.directions).locations;
-  result.self_intersections =
-      findSelfIntersections(result.mesh.points, result.mesh.triangles, listener.execution(threads));
-  return result;
-}
-
-py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::size_t count,
-                       const std::string& fit, int threads, const py::object& progress) {
-  const SphereGrid kind = grid == "octahedral" ? SphereGrid::Octahedral : SphereGrid::Icosahedral;
-  const SurfaceFit surface_fit = fitOf(fit);
+  std::vector<SphereLocation> locations;
+  std::vector<std::array<Index, 2>> self_intersections;
   Listener listener(progress);
-  const Remeshed remeshed = listener.run([&] {
+  listener.run([&] {
     listener.step("surface", 0.0);
-    const SphereSurface surface = surfaceOf(mesh, surface_fit, threads);
+    const SphereSurface surface = surfaceOf(mapped, surface_fit, threads);
     listener.step("surface", 1.0);
     listener.step("resample", 0.0);
-    return remeshOnGrid(surface, kind, count, threads, listener);
+    frequency = gridFrequency(kind, count, surface);
+    mesh = resampleSurface(surface, makeGridSphere(kind, frequency));
+    listener.step("resample", 1.0);
+    listener.step("untangle", 0.0);
+    untangling = untangle(surface, mesh, threads);
+    listener.step("untangle", 1.0);
+    locations = surface.evaluate(mesh.directions).locations;
+    self_intersections =
+        findSelfIntersections(mesh.points, mesh.triangles, listener.execution(threads));
   });
-  py::dict dict(
-      "vertices"_a = toArray(remeshed.mesh.points),
-      "triangles"_a = toArray(remeshed.mesh.triangles),
-      "normals"_a = toArray(remeshed.mesh.normals),
-      "directions"_a = toArray(remeshed.mesh.directions), "frequency"_a = remeshed.frequency,
-      "self_intersections"_a = toArray(remeshed.self_intersections),
-      "self_intersections_before"_a = remeshed.untangling.before,
-      "moved"_a = remeshed.untangling.moved, "flipped_edges"_a = remeshed.untangling.flips);
-  addLocations(remeshed.locations, "source", dict);
+  py::dict dict("vertices"_a = toArray(mesh.points), "triangles"_a = toArray(mesh.triangles),
+                "normals"_a = toArray(mesh.normals), "directions"_a = toArray(mesh.directions),
+                "frequency"_a = frequency, "self_intersections"_a = toArray(self_intersections),
+                "self_intersections_before"_a = untangling.before, "moved"_a = untangling.moved,
+                "flipped_edges"_a = untangling.flips);
+  addLocations(locations, "source", dict);
   return dict;
 }
 

@@ -1,6 +1,6 @@
 #include "spherical_param/map/resampling.h"
 
-#include "charts.h"
+#include "map_shapes.h"
 
 #include <gtest/gtest.h>
 

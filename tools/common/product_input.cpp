@@ -144,4 +144,12 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
   }
 }
 
+void addToJson(const MeshTopology& topology, Json& json) {
+  json["closed"] = topology.closed;
+  json["manifold"] = topology.manifold();
+  json["oriented"] = topology.oriented;
+  json["components"] = topology.components;
+  json["genus"] = topology.genus ? Json(*topology.genus) : Json(nullptr);
+}
+
 }  // namespace spherical_param::tools

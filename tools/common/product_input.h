@@ -8,6 +8,7 @@
 #include "common/reconstruction_options.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/mesh_topology.h"
 
 #include <string>
 #include <vector>
@@ -60,5 +61,7 @@ std::vector<Color> truncated(const Eigen::Matrix4Xd& colors);
 /// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the
 /// embedding as `embedding_distortion`, null without one.
 void addMapToJson(const MappedCloud& mapped, Json& json);
+/// Adds `closed`, `manifold`, `oriented`, `components` and `genus`.
+void addToJson(const MeshTopology& topology, Json& json);
 
 }  // namespace spherical_param::tools
