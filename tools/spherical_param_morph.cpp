@@ -238,11 +238,10 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
   console.begin("verify");
   std::size_t sum = 0;
   for (std::size_t frame = 0; frame < settings.frames; ++frame) {
-    Execution execution;
-    execution.threads = settings.threads();
     const Positions positions = asWritten(positionsOf(settings, morph, frame));
     morph.self_intersections.push_back(
-        findSelfIntersections(positions, morph.result.triangles, execution).size());
+        findSelfIntersections(positions, morph.result.triangles, Execution{settings.threads()})
+            .size());
     sum += morph.self_intersections.back();
     console.update(timeOf(settings, frame));
   }

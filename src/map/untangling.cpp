@@ -29,12 +29,6 @@ constexpr int kSweepsOfRound = 5;
 
 using Pairs = std::vector<std::array<Index, 2>>;
 
-Execution onThreads(int threads) {
-  Execution execution;
-  execution.threads = threads;
-  return execution;
-}
-
 /// The vertices of triangles, ascending.
 std::vector<Index> verticesOf(const std::vector<Index>& zone, const Triangles& triangles) {
   std::vector<Index> vertices;
@@ -95,7 +89,7 @@ public:
           slide(v);
       // Pairs that were there are among those of the zone.
       pairs = findSelfIntersectionsOf(mesh_.points, mesh_.triangles, trianglesAt(zone, corners_),
-                                      onThreads(threads_));
+                                      Execution{threads_});
       if (pairs.size() < best_pairs.size()) {
         best = mesh_;
         best_pairs = pairs;
@@ -197,7 +191,7 @@ std::size_t flipAround(Pairs& pairs, ResampledMesh& mesh, int threads) {
       continue;
     all += flips;
     mesh.triangles = flippable.triangles();
-    pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, Execution{threads});
   }
   return all;
 }
@@ -214,7 +208,7 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int
   internal::checkTriangles("untangle", mesh.triangles, n);
   const std::size_t count = internal::columnCount(mesh.points);
   const int threads = internal::threadCount(requested, count);
-  Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+  Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, Execution{threads});
   UntanglingReport report = Sliding(surface, mesh, threads).run(pairs);
   if (!pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
     report.flips = flipAround(pairs, mesh, threads);

@@ -28,7 +28,7 @@ struct SphericalParamTextureOptions {
 };
 
 /** \brief Mesh a cloud, and give the mesh a texture: the colours of the points, or a checkerboard
- * if their type has none.
+ * if their type has none. A mesh with handles is a failure: setHandles(HandleMode::None) cuts them.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there
