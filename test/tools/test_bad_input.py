@@ -89,7 +89,7 @@ class BadInput(ToolTest):
                 "out_%03d.ply -json j_%03d.json": "is a pattern, but one report has all parts"},
             "scan": {"": "the shape is missing", "sphere": "the output file", "cube out.pcd": "unknown shape 'cube'",
                      "sphere out.stl": "extension", "sphere out.ply -truth ./out.ply": "would overwrite"},
-            "remesh in.xyz": {"out.png": "out.png", "out.stl -grid even": "out.stl",
+            "remesh in.xyz": {"out.png": "out.png", "out.pcd": "out.pcd",
                               "out.ply -harmonics ''": "-harmonics", "out.ply -harmonics out.ply": "would overwrite"},
             "morph in.ply in.xyz": {
                 **{f"{name}.ply": "% that is not a frame number" for name in ("m_%s", "m_%d_%d", "m_%12d", "m_%%")},

@@ -20,7 +20,7 @@ TOOLS = {
     "reconstruction": ("in.ply out.ply -sphere s.vtk -smoothing 4 -outliers 5",
                        "sphere report", "optimization smoothing cleaning embedding quality write"),
     "remesh": ("in.ply out.ply -sphere s.ply -harmonics c.json -degree 6",
-               "grid points side fit sphere harmonics series degree area-weight map-sweeps",
+               "grid points fit sphere harmonics series degree area-weight map-sweeps",
                "map surface harmonics resample untangle verify write"),
     "texture": ("in.ply out.obj -size 64 -chart cube",
                 "chart size gutter checker image area-weight map-sweeps", "quality map atlas image write"),
