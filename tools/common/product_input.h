@@ -17,7 +17,8 @@ namespace spherical_param::tools {
 
 /// What the tools that use the map to the sphere have in common: how they come to it.
 struct ProductSettings {
-  /// \param topology of the mesh by default; with that of a sphere, also the scan's has no handles.
+  /// \param topology of the mesh by default. With TopologyMode::Sphere handles are none by default,
+  ///                 so that a mesh of -topology scan has a map as well.
   explicit ProductSettings(TopologyMode topology, SphereMapOptions of_map = {});
 
   SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
