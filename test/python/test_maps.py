@@ -162,7 +162,8 @@ class Maps(unittest.TestCase):
         for function, argument, wrong in (
             (sp.sphere_map, mesh, {"area_weight": (2, "1"), "sweeps": (1001, 1.5)}),
             (sp.measure_map_distortion, mesh, {"threads": (-1,)}),
-            (sp.remesh, map_, {"grid": ("cubic", 1), "fit": ("spline",), "points": (3, 2**28 + 1, 1e3), "threads": (-1,)}),
+            (sp.remesh, map_, {"grid": ("cubic", 1), "fit": ("spline",), "points": (3, 2**28 + 1, 1e3),
+                               "threads": (-1,)}),
             (sp.texture_coordinates, map_, {"chart": ("cylinder", 1), "margin": (0.3, "a")}),
             (morph, map_, {"align": ("best",), "connectivity": (1,), "fit": ("spline",), "samples": (3,),
                            "match": (1,), "pairs": ([1, 2], [[0.5, 1]])}),

@@ -113,8 +113,8 @@ class BadInput(ToolTest):
                 "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
                 "-seed -1": "option -seed: '-1'"},
             "remesh in.xyz out.ply": {
-                "-grid cubic": "'cubic' is not allowed", "-points 3": "-points", "-harmonics c.json -degree 513": "-degree",
-                "-map-sweeps 1001": "-map-sweeps"},
+                "-grid cubic": "'cubic' is not allowed", "-points 3": "-points", "-map-sweeps 1001": "-map-sweeps",
+                "-harmonics c.json -degree 513": "-degree"},
             "morph in.ply in.xyz m.ply": {
                 "-frames 1": "-frames", "-align yes": "option -align: 'yes'",
                 "-connectivity resampled -samples 11": "-samples"},

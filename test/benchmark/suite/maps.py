@@ -20,9 +20,10 @@ MAPS = [("model", "cloud"), ("vertices", "vertices"),
         ("angle_distortion.mean", "map", 3), ("angle_distortion.max", "max", 1),
         ("stretch_efficiency", "stretch efficiency", 3),
         ("seconds", "time [s]", 2), ("ratio", "of the meshing", 1)]  # fmt: skip
-REMESHED = [("model", "cloud"), ("vertices", "points"), ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"), ("rms", "RMS [%]", 4),
-            ("hausdorff", "Hausdorff [%]", 3), ("mesh_rms", "RMS of the mesh [%]", 4),
-            ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3), ("seconds", "time [s]", 1)]  # fmt: skip
+REMESHED = [("model", "cloud"), ("vertices", "points"), ("sphere", "closed, manifold, genus 0"),
+            ("intersections", "self-intersections"), ("rms", "RMS [%]", 4), ("hausdorff", "Hausdorff [%]", 3),
+            ("mesh_rms", "RMS of the mesh [%]", 4), ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3),
+            ("seconds", "time [s]", 1)]  # fmt: skip
 
 
 def _remesh(context, *words):
