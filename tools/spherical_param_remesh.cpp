@@ -4,6 +4,7 @@
 #include "common/errors.h"
 #include "common/file_formats.h"
 #include "common/mesh_distance.h"
+#include "common/png_image.h"
 #include "common/product_input.h"
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
@@ -42,6 +43,8 @@ ToolText toolText() {
               extensionsFor(FileUse::ReadCloud) +
               "\n  output: " + extensionsFor(FileUse::WriteMesh) + "\n",
           {{"A mesh of even triangles on an icosahedral grid", "scan.ply even.ply -points 2562"},
+           {"A geometry image: a square of positions",
+            "scan.ply mesh.ply -grid octahedral -image image.png"},
            {"The shape as spherical harmonics, and their surface",
             "scan.ply smooth.ply -series -degree 16 -harmonics shape.json"}}};
 }
@@ -54,6 +57,7 @@ struct Settings {
   std::optional<std::size_t> points;  ///< none: as many as the mesh has vertices
   SurfaceFit fit = SurfaceFit::Smooth;
   std::string sphere;     ///< empty: not wanted
+  std::string image;      ///< empty: not wanted
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
@@ -73,6 +77,8 @@ OptionTable optionsOf(Settings& settings) {
         choiceOption("fit", "surface between the points of the cloud", settings.fit, fit_names),
         fileOption("sphere", "write the points on the sphere with the same triangles",
                    settings.sphere),
+        fileOption("image", "write the octahedral grid as geometry image, 16-bit .png",
+                   settings.image),
         fileOption("harmonics", "write coefficients of spherical harmonics of the shape, as JSON",
                    settings.harmonics),
         flagOption("series", "output the surface of that series", settings.series),
@@ -91,6 +97,13 @@ void parse(const CommandLine& command_line, Settings& settings) {
   if (!settings.sphere.empty()) {
     requireFormat(settings.sphere, FileUse::WriteMesh);
   }
+  if (!settings.image.empty() && extensionOf(settings.image) != ".png") {
+    throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
+                     "give a name that does");
+  }
+  if (settings.grid != SphereGrid::Octahedral) {
+    command_line.refuse({"image"}, "-grid icosahedral", "-grid octahedral");
+  }
   parseProductOptions(command_line, settings.product);
   if (!settings.needsHarmonics()) {
     command_line.refuse({"degree"}, "neither -harmonics nor -series", "-harmonics FILE");
@@ -99,7 +112,8 @@ void parse(const CommandLine& command_line, Settings& settings) {
 
 /// The files that will be written, the standard output not among them.
 std::vector<std::string> outputsOf(const Settings& settings) {
-  return outputsOf(settings.report, {settings.output, settings.sphere, settings.harmonics});
+  return outputsOf(settings.report,
+                   {settings.output, settings.sphere, settings.image, settings.harmonics});
 }
 
 /// What is written, with its quality.
@@ -107,6 +121,7 @@ struct Output {
   ResampledMesh mesh;         ///< in single precision, as it is written
   std::vector<Color> colors;  ///< of its points, or none
   int frequency = 0;          ///< of the grid
+  std::optional<GeometryImage> image;
   std::optional<SphericalHarmonics> harmonics;
   std::optional<UntanglingReport> untangling;
   MeshTopology topology;
@@ -163,6 +178,11 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   const SphereSurface surface = surfaceOf(mapped, settings.fit, settings.threads());
   output.stages = mapped.cloud.stages;
   output.stages.push_back(console.end());
+  if (!settings.image.empty() && surface.isOpen()) {
+    throw Failure("cannot write " + inQuotes(settings.image) +
+                      ": a geometry image has no openings, but the surface has some",
+                  "give -surface closed, or leave out -image");
+  }
   if (settings.needsHarmonics()) {
     console.begin("harmonics");
     output.harmonics = computeSphericalHarmonics(surface, settings.degree, settings.threads());
@@ -181,6 +201,14 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
         truncated(colorsAt(mapped, surface.evaluate(output.mesh.directions).locations, 0.5));
   }
   output.mesh.points = asWritten(output.mesh.points);
+  if (!settings.image.empty()) {
+    output.image = geometryImageOfMesh(output.mesh);
+  }
+}
+
+Json imageToJson(const GeometryImage& image) {
+  const ImageBox box = boxOf(image);
+  return {{"side", image.side}, {"low", box.low}, {"high", box.high}};
 }
 
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,
@@ -235,6 +263,7 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["options"] = optionsToJson(optionsOf(settings));
   addMapToJson(mapped, json);
   json["grid"] = {{"kind", nameOf(settings.grid, grid_names)}, {"frequency", output.frequency}};
+  json["image"] = output.image ? imageToJson(*output.image) : Json();
   json["points"] = output.pointCount();
   json["triangles"] = output.mesh.triangles.cols();
   addToJson(output.topology, json);
@@ -289,6 +318,9 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
     sphere.shiftBy({});
     sphere.moveTo(output.mesh.directions);
     run.write(settings.sphere, sphere, console.updates(0.5, 1.0));
+  }
+  if (output.image) {
+    run.open(settings.image).write(encodePng(*output.image));
   }
   if (!settings.harmonics.empty()) {
     run.open(settings.harmonics).write(textOf(harmonicsToJson(settings, *output.harmonics)));

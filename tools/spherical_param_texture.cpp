@@ -2,6 +2,7 @@
 
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/png_image.h"
 #include "common/product_input.h"
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"

@@ -146,15 +146,10 @@ public:
   GridSphere grid() const {
     const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, f_));
     GridSphere grid{Positions(3, n), Triangles(3, Eigen::Index{8} * f_ * f_), f_};
-    std::vector<Index> vertices;  // of the points, row by row from the top
-    Index count = 0;
+    const std::vector<Index> vertices = this->vertices();
     for (Index y = f_; y >= -f_; --y)
-      for (Index x = -f_; x <= f_; ++x) {
-        const Eigen::Index first = firstSame(x, y);
-        if (first == place(x, y))
-          grid.directions.col(count) = direction(x, y);
-        vertices.push_back(first == place(x, y) ? count++ : entry(vertices, first));
-      }
+      for (Index x = -f_; x <= f_; ++x)
+        grid.directions.col(entry(vertices, place(x, y))) = direction(x, y);
     Eigen::Index t = 0;
     const auto at = [&](Index x, Index y) { return entry(vertices, place(x, y)); };
     for (Index y = f_ - 1; y >= -f_; --y)
@@ -172,6 +167,18 @@ public:
         }
       }
     return grid;
+  }
+
+  /// The vertex of each point, row by row from the top.
+  std::vector<Index> vertices() const {
+    std::vector<Index> result;
+    Index count = 0;
+    for (Index y = f_; y >= -f_; --y)
+      for (Index x = -f_; x <= f_; ++x) {
+        const Eigen::Index first = firstSame(x, y);
+        result.push_back(first == place(x, y) ? count++ : entry(result, first));
+      }
+    return result;
   }
 
 private:
@@ -254,6 +261,15 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
   mesh.points = std::move(samples.positions);
   mesh.normals = std::move(samples.normals);
   return mesh;
+}
+
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
+  const std::size_t count = internal::columnCount(mesh.points);
+  const int frequency = gridFrequency(SphereGrid::Octahedral, count);
+  if (gridVertices(SphereGrid::Octahedral, frequency) != count)
+    throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
+                       " vertices are not those of an octahedral grid; use makeGridSphere()");
+  return {2 * frequency + 1, mesh.points(Eigen::all, OctahedralSquare(frequency).vertices())};
 }
 
 }  // namespace spherical_param

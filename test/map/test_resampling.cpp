@@ -1,5 +1,6 @@
 #include "spherical_param/map/resampling.h"
 
+#include "charts.h"
 #include "map_shapes.h"
 
 #include <gtest/gtest.h>
@@ -82,6 +83,33 @@ TEST(ResampleSurface, HasTheSurfaceAtEachDirectionAndIsAMapAgain) {
     EXPECT_GT(test::volumeOf(mesh.points, mesh.triangles), 0.0);
     const SphereSurface again(mesh.points, mesh.triangles, mesh.directions);
     EXPECT_EQ(again.evaluate(mesh.directions).positions, mesh.points);
+  }
+}
+
+TEST(GeometryImage, IsTheMeshOfTheGridLaidOutAsTheOctahedralChart) {
+  for (const int frequency : {1, 2, 10}) {
+    const ResampledMesh mesh =
+        resampleSurface(bumpySurface(500), makeGridSphere(SphereGrid::Octahedral, frequency));
+    const GeometryImage image = geometryImageOfMesh(mesh);
+    const int side = 2 * frequency + 1;
+    ASSERT_EQ(image.side, side);
+    ASSERT_EQ(image.positions.cols(), side * side);
+    ResampledMesh directions = mesh;  // the image of the directions is the chart
+    directions.points = mesh.directions;
+    const Positions chart = geometryImageOfMesh(directions).positions;
+    for (int row = 0; row < side; ++row)
+      for (int column = 0; column < side; ++column) {
+        const Vector3d expected = test::directionAt(
+            {SphereChart::Octahedral}, {column / (side - 1.0), 1.0 - row / (side - 1.0)});
+        EXPECT_LT((chart.col(row * side + column) - expected).norm(), 1e-15);
+      }
+    // Each vertex is a pixel; pairs on the border are the same.
+    for (Eigen::Index v = 0; v < mesh.points.cols(); ++v)
+      EXPECT_EQ((image.positions.colwise() - mesh.points.col(v)).colwise().norm().minCoeff(), 0.0);
+    for (int i = 0; i < side; ++i) {
+      EXPECT_EQ(image.positions.col(i), image.positions.col(side - 1 - i));
+      EXPECT_EQ(image.positions.col(side * i), image.positions.col(side * (side - 1 - i)));
+    }
   }
 }
 

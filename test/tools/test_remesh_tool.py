@@ -1,6 +1,9 @@
 """pcl_spherical_param_remesh: grids, harmonics and report."""
 
+import pathlib
+import struct
 import unittest
+import zlib
 
 import numpy as np
 from tool_test import (Mesh, ToolTest, call, ellipsoid, lengths, read_json, report_of, run, volume, write_ply,
@@ -22,6 +25,26 @@ def colors_at(directions):
 def directions_of(points):
     """The directions of points near the ellipsoid, of length 1 on it."""
     return (points - CENTER) / AXES
+
+
+def decode_16_bits(png):
+    """Rows, columns and channels of a PNG of 16 bits a channel. Needed as matplotlib reads 8 bits of them."""
+    size = struct.unpack(">II", png[16:24])
+    data, at = b"", 8
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at : at + 8])
+        data += png[at + 8 : at + 8 + length] if kind == b"IDAT" else b""
+        at += length + 12
+    row, rows = bytearray(6 * size[0]), []
+    lines = zlib.decompress(data)
+    for start in range(0, len(lines), len(row) + 1):
+        filtered, above, row = lines[start], row, bytearray(lines[start + 1 : start + 1 + len(row)])
+        for i in range(len(row)):  # PNG specification, section 9.2
+            left, corner = (row[i - 6], above[i - 6]) if i >= 6 else (0, 0)
+            paeth = min((left, above[i], corner), key=lambda each: abs(left + above[i] - corner - each))
+            row[i] = (row[i] + (0, left, above[i], (left + above[i]) // 2, paeth)[filtered]) % 256
+        rows.append(np.frombuffer(bytes(row), ">u2").reshape(-1, 3))
+    return np.stack(rows)
 
 
 class RemeshTool(ToolTest):
@@ -54,6 +77,21 @@ class RemeshTool(ToolTest):
                 self.same(sphere[COLORS], mesh[COLORS])
                 self.assertNotIn("nx", sphere)
                 self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
+
+    def test_geometry_image_has_the_vertices_of_the_octahedral_grid_in_16_bits(self):
+        report = report_of("remesh", "in.ply", "out.ply", "-grid", "octahedral", "-points", 258, "-image", "out.png")
+        image = report["image"]
+        self.assertEqual(image["side"], 17)
+        points = Mesh("out.ply").points
+        self.assertLess(np.abs(points.min(axis=0) - image["low"]).max(), 1e-6)
+        self.assertLess(np.abs(points.max(axis=0) - image["high"]).max(), 1e-6)
+        pixels = decode_16_bits(pathlib.Path("out.png").read_bytes()).reshape(-1, 3)
+        self.assertEqual(len(pixels), 17 * 17)
+        low, high = np.array(image["low"]), np.array(image["high"])
+        positions = low + pixels / 65535 * (high - low)
+        nearest = lengths((positions[:, None] - points[None]).reshape(-1, 3)).reshape(len(positions), -1)
+        self.assertLess(nearest.min(axis=1).max(), 1e-4)  # each pixel is a vertex, and each vertex a pixel
+        self.assertLess(nearest.min(axis=0).max(), 1e-4)
 
     def test_output_has_as_many_points_as_the_mesh_unless_told(self):
         self.assertEqual(report_of("remesh", "in.ply", "out.ply")["points"], 492)

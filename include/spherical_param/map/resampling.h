@@ -108,6 +108,22 @@ struct UntanglingReport {
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
 
+/// A surface as a square image of positions (Gu, Gortler and Hoppe 2002), on an unfolded octahedron
+/// (Praun and Hoppe 2003). Pixels (0, j) and (0, side - 1 - j) of the border coincide, likewise on
+/// the other sides; the four corners coincide.
+struct GeometryImage {
+  int side = 0;         ///< pixels along each side: 2 f + 1 for a grid of frequency f
+  Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
+};
+
+/// The geometry image of a mesh with the grid of makeGridSphere() for SphereGrid::Octahedral, from
+/// resampleSurface() or untangle().
+///
+/// \param mesh with such vertices, which may have slid.
+/// \return the image, whose pixels are the vertices.
+/// \throw InvalidInput for another number of vertices.
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
+
 /// @}
 
 }  // namespace spherical_param
