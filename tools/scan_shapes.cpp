@@ -448,9 +448,8 @@ Scan generateScan(const ScanOptions& options) {
     const double v = uniform(random);
     points.col(i) = (1.0 - u) * corner(t, 0) + u * (1.0 - v) * corner(t, 1) + u * v * corner(t, 2);
   }
-  // Without normals, the two sides of a thin part keep their distance from each other, too.
-  const std::vector<Index> kept = internal::eliminateSamples(
-      points, Positions::Zero(3, points.cols()), options.points, areas.sum(), 0);
+  // The two sides of a thin part keep their distance from each other, too.
+  const std::vector<Index> kept = eliminateSamples(points, options.points, areas.sum());
 
   const Distance& distance = findShape(options.shape).distance;
   Scan scan = {Positions(3, kept.size()), Positions(3, kept.size())};

@@ -56,7 +56,7 @@ struct Settings {
   SurfaceFit fit = SurfaceFit::Linear;
   bool match = false;
   bool check = false;
-  ProductSettings product{HandlesOnSphere::Refused};
+  ProductSettings product{TopologyMode::Sphere};
   OutputSettings report;
 
   bool isResampled() const { return morph.connectivity == MorphConnectivity::Resampled; }
@@ -165,8 +165,8 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
   std::array<Eigen::Vector3d, 2> centers;
   std::array<double, 2> areas{};
   for (std::size_t side = 0; side < 2; ++side) {
-    const Positions& points = clouds[side].mesh.points;
-    const Triangles& triangles = clouds[side].mesh.triangles;
+    const Positions& points = clouds[side].points();
+    const Triangles& triangles = clouds[side].triangles();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points.col(triangles(0, 0));
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
@@ -238,11 +238,10 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
   console.begin("verify");
   std::size_t sum = 0;
   for (std::size_t frame = 0; frame < settings.frames; ++frame) {
-    Execution execution;
-    execution.threads = settings.threads();
     const Positions positions = asWritten(positionsOf(settings, morph, frame));
     morph.self_intersections.push_back(
-        findSelfIntersections(positions, morph.result.triangles, execution).size());
+        findSelfIntersections(positions, morph.result.triangles, Execution{settings.threads()})
+            .size());
     sum += morph.self_intersections.back();
     console.update(timeOf(settings, frame));
   }
@@ -284,11 +283,7 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
   json["files"] = settings.files;
   json["vertices"] = morph.vertexCount();
   json["triangles"] = morph.result.triangles.cols();
-  json["closed"] = morph.topology.closed;
-  json["manifold"] = morph.topology.manifold();
-  json["oriented"] = morph.topology.oriented;
-  json["components"] = morph.topology.components;
-  json["genus"] = morph.topology.genus ? Json(*morph.topology.genus) : Json(nullptr);
+  addToJson(morph.topology, json);
   json["rotation"] = Json::array();
   for (Eigen::Index row = 0; row < 3; ++row) {
     json["rotation"].push_back(toJson(Eigen::Vector3d(morph.result.rotation.row(row))));

@@ -1,10 +1,10 @@
-// pcl_spherical_param_remesh: meshes a point cloud anew, with regular triangles or as many points
-// as one likes, and makes and reads geometry images and series of spherical harmonics.
+// pcl_spherical_param_remesh: meshes a point cloud anew, with regular triangles and any number of
+// points, and makes series of spherical harmonics.
 
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/geometry_image_file.h"
 #include "common/mesh_distance.h"
+#include "common/png_image.h"
 #include "common/product_input.h"
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
@@ -28,19 +28,11 @@ namespace {
 using namespace spherical_param;
 using namespace spherical_param::tools;
 
-/// Where the points are.
-enum class Sampling { Icosahedral, Octahedral, Even };
-
-const Names<Sampling> sampling_names = {
-    {"icosahedral", Sampling::Icosahedral},
-    {"octahedral", Sampling::Octahedral},
-    {"even", Sampling::Even},
+const Names<SphereGrid> grid_names = {
+    {"icosahedral", SphereGrid::Icosahedral},
+    {"octahedral", SphereGrid::Octahedral},
 };
 
-/// Of geometry images.
-constexpr const char* image_extensions = " .tif .tiff";
-constexpr int longest_side = 16385;
-constexpr double most_even_points = 1 << 24;
 constexpr double most_vertices = 1 << 28;
 
 ToolText toolText() {
@@ -49,146 +41,87 @@ ToolText toolText() {
           "Meshes the points of an object without holes through it and resamples its surface.\n"
           "  input:  " +
               extensionsFor(FileUse::ReadCloud) +
-              ", or a geometry image: .tif .tiff\n  output: a mesh: " +
-              extensionsFor(FileUse::WriteMesh) + "\n          with -grid even a cloud: " +
-              extensionsFor(FileUse::WriteCloud) + "\n          a geometry image: .tif .tiff\n",
+              "\n  output: " + extensionsFor(FileUse::WriteMesh) + "\n",
           {{"A mesh of even triangles on an icosahedral grid", "scan.ply even.ply -points 2562"},
-           {"A geometry image", "scan.ply geometry.tif"},
-           {"A mesh of that image", "geometry.tif mesh.ply"}}};
+           {"A geometry image: a square of positions",
+            "scan.ply mesh.ply -grid octahedral -image image.png"},
+           {"The shape as spherical harmonics, and their surface",
+            "scan.ply smooth.ply -series -degree 16 -harmonics shape.json"}}};
 }
 
 /// What the user asked for.
 struct Settings {
   std::string input;
   std::string output;
-  Sampling sampling = Sampling::Icosahedral;  ///< octahedral for an image
-  std::optional<std::size_t> points;          ///< none: as many as the mesh has vertices
-  std::optional<int> side;                    ///< none: as the points say
+  SphereGrid grid = SphereGrid::Icosahedral;
+  std::optional<std::size_t> points;  ///< none: as many as the mesh has vertices
   SurfaceFit fit = SurfaceFit::Smooth;
   std::string sphere;     ///< empty: not wanted
+  std::string image;      ///< empty: not wanted
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
-  ProductSettings product{HandlesOnSphere::Refused, mapOptionsForResampling()};
+  ProductSettings product{TopologyMode::Sphere, mapOptionsForResampling()};
   OutputSettings report;
 
-  /// Whether a geometry image becomes a mesh; else the input is a cloud.
-  bool readsImage() const { return isGeometryImageFile(input); }
-  bool writesImage() const { return isGeometryImageFile(output); }
-  bool makesCloud() const { return !readsImage() && sampling == Sampling::Even; }
-  /// Whether vertices are slid along the surface, so that triangles do not intersect.
-  bool slides() const { return !readsImage() && !series && sampling != Sampling::Even; }
   bool needsHarmonics() const { return series || !harmonics.empty(); }
   int threads() const { return product.map.threads; }
 };
 
-OptionTable ownOptions(Settings& settings) {
-  return {usedIf([&] { return !settings.readsImage() && !settings.writesImage(); },
-                 choiceOption("grid", "of the points: two of meshes; even: of a cloud",
-                              settings.sampling, sampling_names)),
-          numberOption(
-              "points",
-              "number of points; for meshes the nearest possible; unset: as the mesh of the cloud",
-              settings.points, 4, settings.makesCloud() ? most_even_points : most_vertices),
-          numberOption("side",
-                       "pixels along the sides of a geometry image, odd; unset: as -points says",
-                       settings.side, 3, longest_side),
-          usedIf([&] { return !settings.readsImage(); },
-                 choiceOption("fit", "surface between the points of the cloud", settings.fit,
-                              fit_names)),
-          fileOption("sphere", "write the points on the sphere with the same triangles",
-                     settings.sphere),
-          fileOption("harmonics", "write coefficients of spherical harmonics of the shape, as JSON",
-                     settings.harmonics),
-          flagOption("series", "output the surface of that series", settings.series),
-          usedIf([&] { return settings.needsHarmonics(); },
-                 numberOption("degree", "degree of the series", settings.degree, 0, 512))};
-}
-
-/// All options; of a geometry image as input those that have a say.
 OptionTable optionsOf(Settings& settings) {
-  ReconstructionSettings& reconstruction = settings.product.reconstruction;
   return joined(
-      {ownOptions(settings),
-       !settings.readsImage()
-           ? productOptions(settings.product)
-           : OptionTable{flagOption("strict", "", reconstruction.strict),
-                         numberOption("threads", "", reconstruction.options.threads, 0, 1024)},
+      {{choiceOption("grid", "of the points", settings.grid, grid_names),
+        numberOption("points",
+                     "number of points, the nearest possible; unset: as the mesh of the cloud",
+                     settings.points, 4, most_vertices),
+        choiceOption("fit", "surface between the points of the cloud", settings.fit, fit_names),
+        fileOption("sphere", "write the points on the sphere with the same triangles",
+                   settings.sphere),
+        fileOption("image", "write the octahedral grid as geometry image, 16-bit .png",
+                   settings.image),
+        fileOption("harmonics", "write coefficients of spherical harmonics of the shape, as JSON",
+                   settings.harmonics),
+        flagOption("series", "output the surface of that series", settings.series),
+        usedIf([&] { return settings.needsHarmonics(); },
+               numberOption("degree", "degree of the series", settings.degree, 0, 512))},
+       productOptions(settings.product),
        outputOptions(settings.report)});
 }
 
-/// Refuses options that would change nothing.
-void checkCombination(const CommandLine& command_line, Settings& settings) {
-  if (settings.readsImage()) {
-    for (const OptionInfo& option :
-         joined({ownOptions(settings), productOptions(settings.product)})) {
-      if (option.name != "sphere" && option.name != "threads" && option.name != "strict") {
-        command_line.refuse({option.name}, "a geometry image as input", "a cloud");
-      }
-    }
-    return;
+void parse(const CommandLine& command_line, Settings& settings) {
+  const std::vector<std::string> files = filesOf(command_line, toolText());
+  settings.input = files[0];
+  settings.output = files[1];
+  requireFormat(settings.input, FileUse::ReadCloud);
+  requireFormat(settings.output, FileUse::WriteMesh);
+  if (!settings.sphere.empty()) {
+    requireFormat(settings.sphere, FileUse::WriteMesh);
   }
-  if (settings.writesImage()) {
-    command_line.refuse({"grid", "sphere", "series", "offset", "ascii"},
-                        "a geometry image as output", "a mesh as output");
-    if (settings.points) {
-      command_line.refuse({"side"}, "-points", "-side alone");
-    }
-  } else {
-    command_line.refuse({"side"}, "an output other than a geometry image", "one ending in .tif");
+  if (!settings.image.empty() && extensionOf(settings.image) != ".png") {
+    throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
+                     "give a name that does");
   }
-  if (settings.sampling == Sampling::Even) {
-    command_line.refuse({"sphere", "series"}, "-grid even", "-grid icosahedral");
+  if (settings.grid != SphereGrid::Octahedral) {
+    command_line.refuse({"image"}, "-grid icosahedral", "-grid octahedral");
   }
+  parseProductOptions(command_line, settings.product);
   if (!settings.needsHarmonics()) {
     command_line.refuse({"degree"}, "neither -harmonics nor -series", "-harmonics FILE");
   }
 }
 
-void parseFiles(const CommandLine& command_line, Settings& settings) {
-  const std::vector<std::string> files = filesOf(command_line, toolText());
-  settings.input = files[0];
-  settings.output = files[1];
-  command_line.apply(ownOptions(settings));  // a cloud has fewer points
-  if (!settings.readsImage()) {
-    requireFormat(settings.input, FileUse::ReadCloud, image_extensions);
-  } else if (settings.writesImage()) {
-    throw UsageError("a geometry image can only be written as a mesh",
-                     "give an output with one of " + extensionsFor(FileUse::WriteMesh));
-  }
-  if (!settings.writesImage()) {
-    requireFormat(settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh,
-                  image_extensions);
-  }
-  if (!settings.sphere.empty()) {
-    requireFormat(settings.sphere, FileUse::WriteMesh);
-  }
-}
-
-void parse(const CommandLine& command_line, Settings& settings) {
-  parseFiles(command_line, settings);
-  if (settings.side && *settings.side % 2 == 0) {
-    throw UsageError("option -side: " + std::to_string(*settings.side) + " is even",
-                     "give an odd number such as " + std::to_string(*settings.side + 1));
-  }
-  parseProductOptions(command_line, settings.product);
-  checkCombination(command_line, settings);
-  if (settings.writesImage()) {
-    settings.sampling = Sampling::Octahedral;
-  }
-}
-
 /// The files that will be written, the standard output not among them.
 std::vector<std::string> outputsOf(const Settings& settings) {
-  return outputsOf(settings.report, {settings.output, settings.sphere, settings.harmonics});
+  return outputsOf(settings.report,
+                   {settings.output, settings.sphere, settings.image, settings.harmonics});
 }
 
 /// What is written, with its quality.
 struct Output {
-  ResampledMesh mesh;         ///< in single precision, as it is written; a cloud has no triangles
+  ResampledMesh mesh;         ///< in single precision, as it is written
   std::vector<Color> colors;  ///< of its points, or none
-  GeometryImage image;        ///< if one is read or written
   int frequency = 0;          ///< of the grid
+  std::optional<GeometryImage> image;
   std::optional<SphericalHarmonics> harmonics;
   std::optional<UntanglingReport> untangling;
   MeshTopology topology;
@@ -199,43 +132,22 @@ struct Output {
   std::vector<StageTime> stages;
   Point offset{};  ///< of the coordinates that are written
 
-  std::string pixels() const {
-    return std::to_string(image.side) + " x " + std::to_string(image.side) + " pixels";
-  }
   std::size_t pointCount() const { return static_cast<std::size_t>(mesh.points.cols()); }
-  bool isCloud() const { return mesh.triangles.cols() == 0; }
 };
-
-GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurface& surface) {
-  const SphereGrid kind =
-      settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
-  int frequency = gridFrequency(kind, points, surface);
-  if (settings.writesImage()) {
-    frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
-  }
-  return makeGridSphere(kind, frequency);
-}
 
 /// Samples the surface as the user wants it.
 void resample(const Settings& settings, const MappedCloud& mapped, const SphereSurface& surface,
               Output& output) {
   const std::size_t wanted =
-      settings.points ? *settings.points : static_cast<std::size_t>(mapped.mesh.points.cols());
-  if (settings.makesCloud()) {
-    SurfacePoints points =
-        sampleEvenly(surface, wanted, settings.product.reconstruction.options.seed);
-    output.mesh.points = std::move(points.points);
-    output.mesh.normals = std::move(points.normals);
-    output.colors = truncated(colorsAt(mapped, points.locations, 0.5));
-  } else {
-    const GridSphere grid = gridOf(settings, wanted, surface);
-    output.frequency = grid.frequency;
-    output.mesh = resampleSurface(surface, grid);
-    if (settings.series) {
-      output.mesh.points =
-          evaluateSphericalHarmonics(*output.harmonics, output.mesh.directions, settings.threads());
-      output.mesh.normals.resize(3, 0);
-    }
+      settings.points ? *settings.points : static_cast<std::size_t>(mapped.points().cols());
+  const GridSphere grid =
+      makeGridSphere(settings.grid, gridFrequency(settings.grid, wanted, surface));
+  output.frequency = grid.frequency;
+  output.mesh = resampleSurface(surface, grid);
+  if (settings.series) {
+    output.mesh.points =
+        evaluateSphericalHarmonics(*output.harmonics, output.mesh.directions, settings.threads());
+    output.mesh.normals.resize(3, 0);
   }
 }
 
@@ -243,20 +155,18 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
 void verify(const Settings& settings, const MappedCloud& mapped, Output& output, Console& console) {
   console.begin("verify");
   const ResampledMesh& mesh = output.mesh;
-  if (!output.isCloud()) {
-    output.topology = checkTopology(mesh.triangles, output.pointCount(), settings.threads());
-    output.measures = measureMesh(mesh.points, mesh.triangles, settings.threads());
-    Execution execution;
-    execution.threads = settings.threads();
-    execution.progress = console.progress(0.5);
-    const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
-    output.self_intersections = pairs.size();
-    output.intersecting_triangles = countTriangles(pairs);
-    if (!settings.readsImage() && output.topology.closed) {
-      const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
-                                  {SurfaceFit::Linear, settings.threads()});
-      output.distance = distanceFromMesh(mapped.mesh.points, mapped.map.sphere, surface);
-    }
+  output.topology = checkTopology(mesh.triangles, output.pointCount(), settings.threads());
+  output.measures = measureMesh(mesh.points, mesh.triangles, settings.threads());
+  Execution execution;
+  execution.threads = settings.threads();
+  execution.progress = console.progress(0.5);
+  const auto pairs = findSelfIntersections(mesh.points, mesh.triangles, execution);
+  output.self_intersections = pairs.size();
+  output.intersecting_triangles = countTriangles(pairs);
+  if (output.topology.closed) {
+    const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
+                                {SurfaceFit::Linear, settings.threads()});
+    output.distance = distanceFromMesh(mapped.points(), mapped.map.sphere, surface);
   }
   output.stages.push_back(console.end());
 }
@@ -268,10 +178,10 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   const SphereSurface surface = surfaceOf(mapped, settings.fit, settings.threads());
   output.stages = mapped.cloud.stages;
   output.stages.push_back(console.end());
-  if (settings.writesImage() && surface.isOpen()) {
-    throw Failure("cannot write " + inQuotes(settings.output) +
+  if (!settings.image.empty() && surface.isOpen()) {
+    throw Failure("cannot write " + inQuotes(settings.image) +
                       ": a geometry image has no openings, but the surface has some",
-                  "give -surface closed, or the name of a mesh as output");
+                  "give -surface closed, or leave out -image");
   }
   if (settings.needsHarmonics()) {
     console.begin("harmonics");
@@ -281,68 +191,51 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   console.begin("resample");
   resample(settings, mapped, surface, output);
   output.stages.push_back(console.end(std::to_string(output.pointCount()) + " points"));
-  if (settings.slides()) {
+  if (!settings.series) {
     console.begin("untangle");
-    // The edges of an image are given.
-    output.untangling =
-        untangle(surface, output.mesh, {!settings.writesImage(), settings.threads()});
+    output.untangling = untangle(surface, output.mesh, settings.threads());
     output.stages.push_back(console.end(std::to_string(output.untangling->moved) + " points slid"));
   }
-  if (!output.isCloud() && !mapped.colors.empty()) {
+  if (!mapped.colors.empty()) {
     output.colors =
         truncated(colorsAt(mapped, surface.evaluate(output.mesh.directions).locations, 0.5));
   }
   output.mesh.points = asWritten(output.mesh.points);
-  if (settings.writesImage()) {
+  if (!settings.image.empty()) {
     output.image = geometryImageOfMesh(output.mesh);
   }
 }
 
-void makeFromImage(const Settings& settings, Output& output, Console& console) {
-  console.begin("read");
-  output.image = readGeometryImage(settings.input, console.updates());
-  output.stages.push_back(console.end(output.pixels()));
-  output.frequency = (output.image.side - 1) / 2;
-  console.begin("resample");
-  output.mesh = meshOfGeometryImage(output.image);
-  output.mesh.points = asWritten(output.mesh.points);
-  output.stages.push_back(console.end(std::to_string(output.pointCount()) + " points"));
+Json imageToJson(const GeometryImage& image) {
+  const ImageBox box = boxOf(image);
+  return {{"side", image.side}, {"low", box.low}, {"high", box.high}};
 }
 
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,
                                 const Output& output) {
   std::vector<Finding> findings = mapped.cloud.result.findings;
   if (output.self_intersections > 0) {
-    findings.push_back({"the output has self-intersections" +
-                            std::string(settings.readsImage() || settings.series
-                                            ? ""
-                                            : ": try more -points, or a smaller -area-weight"),
-                        "", "", true});
+    findings.push_back(
+        {"the output has self-intersections" +
+             std::string(settings.series ? "" : ": try more -points, or a smaller -area-weight"),
+         "", "", true});
   }
   return findings;
 }
 
 /// Whether the output is sound, and what the mesh of the cloud leaves open, fills, cuts or joins.
 std::string verdictOf(const Output& output, const MappedCloud& mapped) {
-  if (output.isCloud()) {
-    return "Points spread evenly over the surface.";
-  }
   if (output.self_intersections == 0) {
-    const bool is_of_sound_mesh =
-        !mapped.cloud.result.surfaces.empty() && mapped.cloud.surface().intersecting_triangles == 0;
-    return is_of_sound_mesh ? mapped.cloud.surface().verdict : "A sound mesh.";
+    return mapped.cloud.surface().intersecting_triangles == 0 ? mapped.cloud.surface().verdict
+                                                              : "A sound mesh.";
   }
   return "The mesh has faults: " + grouped(output.intersecting_triangles) + " of " +
          counted(static_cast<std::size_t>(output.mesh.triangles.cols()), "triangle") +
          " intersect.";
 }
 
-/// The series, one line for each coefficient.
-std::string harmonicsText(const Settings& settings, const SphericalHarmonics& harmonics) {
-  const auto dump = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
-  const Json head = {
+Json harmonicsToJson(const Settings& settings, const SphericalHarmonics& harmonics) {
+  Json json = {
       {"version", SPHERICAL_PARAM_VERSION},
       {"input", settings.input},
       {"degree", harmonics.degree},
@@ -352,19 +245,13 @@ std::string harmonicsText(const Settings& settings, const SphericalHarmonics& ha
        "without the phase (-1)^m; m > 0 with cos(m phi), m < 0 with sin(|m| phi); phi is the "
        "longitude, from x to y, and z = cos(theta)"},
       {"rms_residual", harmonics.rms_residual}};
-  std::string text = "{\n";
-  for (const auto& [name, value] : head.items()) {
-    text += "  \"" + name + "\": " + dump(value) + ",\n";
-  }
-  text += "  \"coefficients\": [\n";
   for (int l = 0; l <= harmonics.degree; ++l) {
     for (int m = -l; m <= l; ++m) {
       const Eigen::Vector3d xyz = harmonics.coefficients.col(l * l + l + m);
-      text += "    " + dump({{"l", l}, {"m", m}, {"xyz", toJson(xyz)}}) +
-              (m == l && l == harmonics.degree ? "\n" : ",\n");
+      json["coefficients"].push_back({{"l", l}, {"m", m}, {"xyz", toJson(xyz)}});
     }
   }
-  return text + "  ]\n}\n";
+  return json;
 }
 
 Json report(Settings settings, const MappedCloud& mapped, const Output& output) {
@@ -374,25 +261,15 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["output"] = settings.output;
   json["offset"] = output.offset;
   json["options"] = optionsToJson(optionsOf(settings));
-  if (!settings.readsImage()) {
-    addMapToJson(mapped, json);
-  }
-  const bool is_cloud = output.isCloud();
-  const auto unless = [](bool idle, const Json& value) { return idle ? Json(nullptr) : value; };
-  json["grid"] = {{"kind", nameOf(settings.readsImage() ? Sampling::Octahedral : settings.sampling,
-                                  sampling_names)},
-                  {"frequency", unless(is_cloud, output.frequency)},
-                  {"side", unless(output.image.side == 0, output.image.side)}};
+  addMapToJson(mapped, json);
+  json["grid"] = {{"kind", nameOf(settings.grid, grid_names)}, {"frequency", output.frequency}};
+  json["image"] = output.image ? imageToJson(*output.image) : Json();
   json["points"] = output.pointCount();
   json["triangles"] = output.mesh.triangles.cols();
-  json["closed"] = unless(is_cloud, output.topology.closed);
-  json["manifold"] = unless(is_cloud, output.topology.manifold());
-  json["oriented"] = unless(is_cloud, output.topology.oriented);
-  json["components"] = unless(is_cloud, output.topology.components);
-  json["genus"] = output.topology.genus ? Json(*output.topology.genus) : Json(nullptr);
-  json["volume"] = unless(is_cloud, output.measures.volume);
-  json["area"] = unless(is_cloud, output.measures.area);
-  json["self_intersections"] = unless(is_cloud, output.self_intersections);
+  addToJson(output.topology, json);
+  json["volume"] = output.measures.volume;
+  json["area"] = output.measures.area;
+  json["self_intersections"] = output.self_intersections;
   const auto& untangling = output.untangling;
   json["untangling"] = !untangling ? Json()
                                    : Json({{"self_intersections_before", untangling->before},
@@ -415,9 +292,6 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
 
 Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Output& output) {
   Summary summary = summaryOf(settings.input, mapped.cloud);
-  if (settings.readsImage()) {
-    summary.read = settings.input;
-  }
   summary.verdict = verdictOf(output, mapped);
   summary.made = meshSize(output.pointCount(), output.mesh.triangles.cols());
   summary.written = outputsOf(settings);
@@ -429,28 +303,27 @@ Summary summaryOf(const Settings& settings, const MappedCloud& mapped, const Out
 void store(const Settings& settings, const MappedCloud& mapped, Output& output, ToolRun& run) {
   Console& console = run.console;
   console.begin("write");
-  if (settings.writesImage()) {
-    writeGeometryImage(run.open(settings.output), output.image, console.updates());
-  } else {
-    PointData vertices;
-    vertices.points = toPoints(output.mesh.points);
-    vertices.normals = toNormals(output.mesh.normals);
-    vertices.colors = output.colors;
-    vertices.has_alpha = mapped.cloud.data->has_alpha;
-    MeshView mesh(vertices, output.mesh.triangles);
-    output.offset = settings.report.offsetOf(settings.output, vertices);
-    mesh.shiftBy(output.offset);
-    run.write(settings.output, mesh, console.updates(0.0, settings.sphere.empty() ? 1.0 : 0.5));
-    if (!settings.sphere.empty()) {
-      MeshView sphere = mesh;
-      sphere.leaveOutNormals();
-      sphere.shiftBy({});
-      sphere.moveTo(output.mesh.directions);
-      run.write(settings.sphere, sphere, console.updates(0.5, 1.0));
-    }
+  PointData vertices;
+  vertices.points = toPoints(output.mesh.points);
+  vertices.normals = toNormals(output.mesh.normals);
+  vertices.colors = output.colors;
+  vertices.has_alpha = mapped.cloud.data->has_alpha;
+  MeshView mesh(vertices, output.mesh.triangles);
+  output.offset = settings.report.offsetOf(settings.output, vertices);
+  mesh.shiftBy(output.offset);
+  run.write(settings.output, mesh, console.updates(0.0, settings.sphere.empty() ? 1.0 : 0.5));
+  if (!settings.sphere.empty()) {
+    MeshView sphere = mesh;
+    sphere.leaveOutNormals();
+    sphere.shiftBy({});
+    sphere.moveTo(output.mesh.directions);
+    run.write(settings.sphere, sphere, console.updates(0.5, 1.0));
+  }
+  if (output.image) {
+    run.open(settings.image).write(encodePng(*output.image));
   }
   if (!settings.harmonics.empty()) {
-    run.open(settings.harmonics).write(harmonicsText(settings, *output.harmonics));
+    run.open(settings.harmonics).write(textOf(harmonicsToJson(settings, *output.harmonics)));
   }
   output.stages.push_back(console.end());
 }
@@ -463,11 +336,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   MappedCloud mapped;
   Output output;
   runLibrary("cannot remesh " + inQuotes(settings.input), kReportIt, [&] {
-    if (settings.readsImage()) {
-      makeFromImage(settings, output, run.console);
-    } else {
-      makeFromCloud(settings, mapped, output, run.console);
-    }
+    makeFromCloud(settings, mapped, output, run.console);
     verify(settings, mapped, output, run.console);
   });
   store(settings, mapped, output, run);

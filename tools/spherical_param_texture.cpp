@@ -2,6 +2,7 @@
 
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/png_image.h"
 #include "common/product_input.h"
 #include "common/reconstruction_report.h"
 #include "common/run_tool.h"
@@ -28,13 +29,14 @@ const Names<SphereChart> chart_names = {
     {"cube", SphereChart::CubeMap},
 };
 
-/// Squares along a quarter of a great circle where a cloud has no colours.
+/// Squares along a quarter of a great circle if a cloud has no colours.
 constexpr int usual_cells = 8;
 
 ToolText toolText() {
   return {"pcl_spherical_param_texture",
           "input output",
-          "Meshes the points of an object, and paints their colours into a texture.\n"
+          "Meshes the points of an object without holes through it, and paints their colours\n"
+          "into a texture.\n"
           "  input:  " +
               extensionsFor(FileUse::ReadCloud) +
               "\n  output: .glb, with the image in it; .obj, with .mtl and .png beside it; .ply, "
@@ -52,7 +54,7 @@ struct Settings {
   TextureAtlasOptions atlas;
   BakeOptions bake;
   std::optional<int> cells;  ///< none: the colours of the points, if there are any
-  ProductSettings product{HandlesOnSphere::Cut};
+  ProductSettings product{TopologyMode::Scan};
   OutputSettings report;
 
   std::string extension() const { return extensionOf(output); }
@@ -81,7 +83,7 @@ std::string seenFrom(const std::string& place, const std::string& file) {
       .generic_string();
 }
 
-/// Names that would be read as something else where they are mentioned.
+/// Refuses a name that would be misread where the output mentions it.
 void checkName(const Settings& settings, const std::string& name) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   const bool is_obj = settings.extension() == ".obj";
@@ -129,7 +131,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
 void parse(const CommandLine& command_line, Settings& settings) {
   parseFiles(command_line, settings);
   parseProductOptions(command_line, settings.product);
-  // The faces of a cube keep room for the gutter, unless they were hardly to be seen then.
+  // The faces of a cube keep room for the gutter, but not more than this fraction of a side.
   constexpr double largest_margin = 0.2;
   const double face = settings.bake.height / 2.0;
   settings.atlas.margin = std::min(settings.bake.gutter / face, largest_margin);
@@ -151,8 +153,8 @@ struct Output {
   std::string pixels() const {
     return std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels";
   }
-  /// Share of the pixels that are in a triangle (1) or in the gutter (2).
-  double share(std::uint8_t kind) const {
+  /// Fraction of the pixels that are in a triangle (1) or in the gutter (2).
+  double fraction(std::uint8_t kind) const {
     return static_cast<double>(std::count(image.covered.begin(), image.covered.end(), kind)) /
            static_cast<double>(image.covered.size());
   }
@@ -163,7 +165,7 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
   mapped.cloud.offset = settings.report.offsetOf(settings.output, *mapped.cloud.data);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
-  output.atlas = makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
+  output.atlas = makeTextureAtlas(mapped.triangles(), mapped.map.sphere, settings.atlas);
   output.stages.push_back(console.end());
 
   console.begin("image");
@@ -172,14 +174,13 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
     output.image = bakeCheckerboard(output.atlas, mapped.map.sphere,
                                     settings.cells.value_or(usual_cells), settings.bake);
   } else {
-    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.mesh.points.cols());
+    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.points().cols());
     for (Eigen::Index v = 0; v < colors.cols(); ++v) {
       const Color& color = mapped.colors[static_cast<std::size_t>(v)];
       colors.col(v) << color[0], color[1], color[2];
     }
     output.image = bakeColors(output.atlas, colors, settings.bake);
   }
-  output.atlas = joinCuts(std::move(output.atlas), mapped.mesh);
   output.stages.push_back(console.end(output.pixels()));
 }
 
@@ -191,7 +192,7 @@ std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& map
   return findings;
 }
 
-/// Those that arise where the chart cuts triangles.
+/// Number of vertices that arise where the chart cuts triangles.
 std::size_t cutVertices(const MappedCloud& mapped, const Output& output) {
   return output.atlas.vertices.size() - mapped.cloud.surface().input_of_vertex.size();
 }
@@ -208,9 +209,8 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["texture"] = output.is_checkerboard ? "checkerboard" : "colors";
   json["image"] = {{"width", output.image.width},
                    {"height", output.image.height},
-                   {"covered_share", output.share(1)},
-                   {"gutter_share", output.share(2)}};
-  json["cut_handles"] = mapped.cloud.surface().genus();
+                   {"covered_share", output.fraction(1)},
+                   {"gutter_share", output.fraction(2)}};
   json["cut_vertices"] = cutVertices(mapped, output);
   json["texture_coordinates"] = output.atlas.coordinates.cols();
   json["triangles"] = output.atlas.triangles.cols();
@@ -240,7 +240,7 @@ void store(const Settings& settings, const MappedCloud& mapped, Output& output, 
   texture.png = encodePng(output.image);
   texture.repeats_u = output.atlas.chart == SphereChart::Equirectangular;
   run.console.update(0.5);
-  // What another mentions gets its name before that does.
+  // A file that another one mentions gets its name first.
   if (!settings.image.empty()) {
     run.open(settings.image).write(texture.png);
     texture.image_name = seenFrom(settings.output, settings.image);

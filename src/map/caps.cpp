@@ -39,11 +39,11 @@ void addCap(const Positions& points, const std::vector<Index>& loop, std::vector
     angles[i] = 2.0 * kPi * (lengths[i] / lengths.back());
   const RingedDisc disc = ringedDisc(angles);
 
-  const Index rim = indexCount(loop);
+  const Index loop_size = indexCount(loop);
   const Index first = static_cast<Index>(points.cols()) + indexCount(added) / 3;
   for (const Index v : disc.triangles.reshaped())
-    corners.push_back(v < rim ? entry(loop, v) : first + v - rim);
-  // The last vertex of the rim before each angle; rings begin at angle 0.
+    corners.push_back(v < loop_size ? entry(loop, v) : first + v - loop_size);
+  // The last vertex of the loop before each angle; rings begin at angle 0.
   std::size_t before = 0;
   for (std::size_t i = loop.size(); i < disc.radii.size(); ++i) {
     const double angle = disc.angles[i];
@@ -60,7 +60,7 @@ void addCap(const Positions& points, const std::vector<Index>& loop, std::vector
   }
 }
 
-/// Where a vertex is, or is going to be.
+/// Where a vertex is, or will be moved to.
 enum class Side : char { Open, Boundary, Surface };
 
 /// A vertex that is nearer to the boundary than this fraction of an edge is moved to it.
@@ -152,8 +152,8 @@ void cutOpenings(Positions& directions, Triangles& triangles,
       moved.col(v) = place.normalized();
     }
   };
-  // Calls visit(vertex on the surface, vertex in an opening, fraction, place) for the edges between
-  // the two: each is in two triangles, once in each direction.
+  // Calls visit(vertex on the surface, vertex in an opening, fraction, place) once for each edge
+  // between the two.
   const auto for_each_crossing = [&](const auto& visit) {
     for (Eigen::Index t = 0; t < triangles.cols(); ++t)
       for (Eigen::Index k = 0; k < 3; ++k) {

@@ -6,13 +6,13 @@
 
 namespace spherical_param::internal {
 
-/// Entries of a list, as the index of the next one.
+/// The size of a list, which is the index of its next entry.
 template <typename List>
 Index indexCount(const List& list) {
   return static_cast<Index>(list.size());
 }
 
-/// Entry of a list that is no Indexed, as those of the public headers.
+/// Entry i of a list with std::size_t indices, as the public headers have them.
 template <typename List>
 auto& entry(List& list, Eigen::Index i) {
   return list[static_cast<std::size_t>(i)];

@@ -241,12 +241,8 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
   // Area(M) / (4 pi) / L2(M)^2 with Sander et al.'s L2(M), their equation 3, which weights with the
   // areas in space.
   distortion.stretch_efficiency = std::min(1.0, 1.0 / distortions.squared_stretch);
-  internal::forEachTask(2, std::min(threads, 2), [&](std::size_t task) {
-    if (task == 0)
-      distortion.angle = statisticsOf(distortions.angles);
-    else
-      distortion.area = statisticsOf(distortions.areas);
-  });
+  distortion.angle = statisticsOf(distortions.angles);
+  distortion.area = statisticsOf(distortions.areas);
   return distortion;
 }
 

@@ -19,10 +19,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles stand for this fraction of the mean at least: the image of a cluster of points,
-/// however small it is in space, is still larger than the rounding of doubles.
+/// The least mass of a triangle, as a fraction of the mean: the image of a cluster of points,
+/// however small it is in space, stays larger than the rounding of doubles.
 constexpr double kMinMass = 1e-6;
-/// A vertex of more neighbours is only taken out if there are too few others.
+/// A vertex with more neighbours is taken out only if there are too few others.
 constexpr Index kMaxCoarseNeighbors = 8;
 
 /// A vertex that may be taken out; the key sorts by cost.
@@ -109,7 +109,7 @@ Indexed<double> massesOf(const Positions& points, const Triangles& triangles, in
   return masses;
 }
 
-/// Takes out vertices, and writes down how.
+/// Takes out vertices, and records how.
 class Coarsening {
   static constexpr Index none = -1;
 
@@ -179,8 +179,8 @@ private:
     return shared == 2;
   }
 
-  /// Moves w to its neighbour v: flips its edges to v until it has three, and merges these. Writes
-  /// down the ring of w, from v on, and the masses of its triangles.
+  /// Moves w to its neighbour v: flips its edges to v until it has three, and merges these. Records
+  /// the ring of w, from v on, and the masses of its triangles.
   void collapse(Index w, Index v) {
     Indexed<Index> star;
     Indexed<Index> ring;
@@ -217,7 +217,7 @@ private:
     double sum = 0.0;
     for (Index i = 1; i <= count; ++i)
       sum += area(i);
-    // A part is shared evenly, so that a triangle without area has some of it.
+    // A part is divided evenly, so that a triangle without area gets some of it.
     constexpr double even = 0.1;
     for (Index i = 1; i <= count; ++i)
       masses_[fan[i]] =

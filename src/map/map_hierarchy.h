@@ -19,8 +19,8 @@ struct MapMesh {
 
 /// A closed mesh of genus 0 and ever coarser ones, down to a tetrahedron, which stand for the same
 /// surface: where a vertex was taken out, the triangles that fill the hole have the masses of those
-/// that were there. So the tip of a limb keeps its share of the sphere when all that is left of it
-/// is a triangle.
+/// that were there. So the tip of a limb keeps its fraction of the sphere when a single triangle is
+/// left of it.
 struct MapHierarchy {
   /// The vertices of the input in the numbering of the hierarchy: the coarser meshes first.
   Indexed<Index> order;
@@ -32,8 +32,8 @@ struct MapHierarchy {
   /// two of them neighbours of each other.
   std::vector<Index> batches;
   /// Ring of vertex v, v >= 4, when it was taken out: [ring_begin[v - 4], ring_begin[v - 3]) of
-  /// `ring`, counter-clockwise; the first is that which the triangles of the hole have in common.
-  /// ring_masses has the mass of the triangle of v and that entry and the next.
+  /// `ring`, counter-clockwise; all triangles that fill the hole have its first entry as a corner.
+  /// ring_masses has the masses of the triangles of v, an entry and the next one.
   std::vector<std::uint32_t> ring_begin;
   std::vector<Index> ring;
   std::vector<float> ring_masses;

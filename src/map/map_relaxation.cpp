@@ -20,9 +20,9 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Triangles thinner than this, height to longest side, count as such.
+/// Triangles with a smaller ratio of height to longest side count as if they had this one.
 constexpr double kThinnest = 0.05;
-/// Logarithms of ratios of areas below this count by their squares rather.
+/// Logarithms of ratios of areas that are smaller count by their squares.
 constexpr double kSmallLog = 0.05;
 
 /// A triangle of vertex u and two neighbours, on the sphere.
@@ -144,7 +144,8 @@ struct Model {
   Vector2d gradient = Vector2d::Zero();
   Matrix2d hessian = Matrix2d::Zero();  ///< the lower triangle
 
-  /// Adds f(a) where a has this gradient, and a Hessian of so much times the identity.
+  /// Adds f(a), where a has the gradient `of_gradient` and `of_hessian` times the identity as
+  /// Hessian.
   void addFunctionOf(double slope, double curvature, const Vector2d& of_gradient,
                      double of_hessian) {
     gradient += slope * of_gradient;
@@ -341,7 +342,7 @@ double relaxMapVertex(Positions& sphere, Index v, const MapRing& ring, const Map
   const Model model = modelAround(sphere, ring, u, basis, energy);
   const Vector2d step = newtonStep(model);
   const double slope = model.gradient.dot(step);
-  // What cannot be gained is not worth the evaluation.
+  // A smaller gain is not worth the evaluation.
   constexpr double least_gain = 1e-7;
   if (!(-slope > least_gain * model.value))
     return 0.0;

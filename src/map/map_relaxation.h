@@ -27,14 +27,14 @@ using MapRing = Row<MapCorner>;
 
 /// The distortion that is minimised: the weights of its terms, and what areas are measured with.
 struct MapEnergy {
-  double angle_weight;  ///< of what the angles are off
-  double log_weight;    ///< of the logarithm of the ratio of areas, but for its sign
-  double ratio_weight;  ///< of the mean of the ratio and its inverse
+  double angle_weight;  ///< of the distortion of angles
+  double log_weight;    ///< of the absolute logarithm of the ratio of areas
+  double ratio_weight;  ///< of the mean of that ratio and its inverse
   double area_of_mass;  ///< area on the sphere that a unit of mass should have
 };
 
-/// The corners around the vertices of a mesh, in the order in which they are worked on: vertices of
-/// one colour, no two of them neighbours, after those of another.
+/// The corners around the vertices of a mesh. The vertices are in order of their colours;
+/// neighbours have different ones.
 struct MapRows {
   Indexed<Index> vertices;
   Indexed<std::uint32_t> begin;     ///< v + 1 positions in `corners`
@@ -46,8 +46,8 @@ struct MapRows {
   }
 };
 
-/// Cotangents of the angles of a triangle; of a needle, those of one that is not as thin: its
-/// distortion would outweigh all others.
+/// Cotangents of the angles of a triangle. A needle gets those of a wider triangle: its distortion
+/// would outweigh all others.
 Eigen::Vector3f mapCotangents(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                               const Eigen::Vector3d& c);
 

@@ -143,7 +143,7 @@ void joinVertices(const SphereSurface& first, const Triangles& triangles, Positi
   }
 }
 
-/// Positions at places of a surface; of the vertices as they are.
+/// Positions at places of a surface. Vertices keep theirs, without rounding.
 Positions positionsAt(const SphereSurface& surface, const std::vector<SphereLocation>& places,
                       int threads) {
   Positions positions(3, internal::indexCount(places));
@@ -162,8 +162,8 @@ double inverseArea(const SphereSurface& surface) {
   return surface.area() > 0.0 ? 1.0 / surface.area() : 1.0;
 }
 
-/// Cuts the faces of an overlay in triangles, by the diagonals that are short in both shapes: any
-/// are right, as each face is flat in both. Leaves out the faces in openings.
+/// Triangulates the faces of an overlay by diagonals that are short in both shapes; any diagonal is
+/// right, as each face is flat in both. Leaves out the faces in openings.
 Triangles triangulateFaces(const internal::SphereOverlay& overlay, const SphereSurface& first,
                            const SphereSurface& second, const MorphResult& morph) {
   std::vector<Index> corners;

@@ -1,13 +1,9 @@
 #include "spherical_param/map/resampling.h"
 
-#include "bit_mixing.h"
 #include "caps.h"
-#include "corner_table.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "sample_elimination.h"
 #include "spherical_param/errors.h"
-#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -15,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -140,17 +135,58 @@ private:
 
 // --- The octahedron, unfolded into a square ------------------------------------------------------
 
-/// The pixels of a geometry image. Seen from the middle of the image, column and row are x to the
-/// right and y upwards, from -f to f.
+/// The octahedron unfolded into a square: the upper half is the diamond in the middle, the lower
+/// half the four corners. Its points (x, y), each from -f to f, are vertices of the grid; those of
+/// the border coincide in pairs, and the four corners.
 class OctahedralSquare {
 public:
   explicit OctahedralSquare(int frequency) : f_(frequency) {}
 
-  Index side() const { return 2 * f_ + 1; }
-  Eigen::Index pixelCount() const { return Eigen::Index{side()} * side(); }
-  Eigen::Index pixel(Index x, Index y) const { return Eigen::Index{f_ - y} * side() + (x + f_); }
+  /// Two triangles for each unit square, between which the edges of the octahedron run.
+  GridSphere grid() const {
+    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, f_));
+    GridSphere grid{Positions(3, n), Triangles(3, Eigen::Index{8} * f_ * f_), f_};
+    const std::vector<Index> vertices = this->vertices();
+    for (Index y = f_; y >= -f_; --y)
+      for (Index x = -f_; x <= f_; ++x)
+        grid.directions.col(entry(vertices, place(x, y))) = direction(x, y);
+    Eigen::Index t = 0;
+    const auto at = [&](Index x, Index y) { return entry(vertices, place(x, y)); };
+    for (Index y = f_ - 1; y >= -f_; --y)
+      for (Index x = -f_; x < f_; ++x) {
+        const Index a = at(x, y);
+        const Index b = at(x + 1, y);
+        const Index c = at(x + 1, y + 1);
+        const Index d = at(x, y + 1);
+        if ((x < 0) == (y < 0)) {
+          grid.triangles.col(t++) << a, b, d;
+          grid.triangles.col(t++) << b, c, d;
+        } else {
+          grid.triangles.col(t++) << a, b, c;
+          grid.triangles.col(t++) << a, c, d;
+        }
+      }
+    return grid;
+  }
 
-  /// The same bits for pixels that are the same place.
+  /// The vertex of each point, row by row from the top.
+  std::vector<Index> vertices() const {
+    std::vector<Index> result;
+    Index count = 0;
+    for (Index y = f_; y >= -f_; --y)
+      for (Index x = -f_; x <= f_; ++x) {
+        const Eigen::Index first = firstSame(x, y);
+        result.push_back(first == place(x, y) ? count++ : entry(result, first));
+      }
+    return result;
+  }
+
+private:
+  /// Where a point is, row by row from the top.
+  Eigen::Index place(Index x, Index y) const {
+    return Eigen::Index{f_ - y} * (2 * f_ + 1) + (x + f_);
+  }
+
   Vector3d direction(Index x, Index y) const {
     const Index z = f_ - std::abs(x) - std::abs(y);
     if (z >= 0)
@@ -159,124 +195,20 @@ public:
                     y < 0 ? std::abs(x) - f_ : f_ - std::abs(x), z)
         .normalized();
   }
-  Vector3d direction(Eigen::Index pixel) const {
-    return direction(static_cast<Index>(pixel % side()) - f_,
-                     f_ - static_cast<Index>(pixel / side()));
-  }
 
-  /// The first pixel that is the same place.
-  Eigen::Index firstPixel(Index x, Index y) const {
+  /// The place of the first point with the same direction.
+  Eigen::Index firstSame(Index x, Index y) const {
     if (std::abs(x) == f_ && std::abs(y) == f_)
       return 0;
     if (std::abs(y) == f_)
-      return pixel(-std::abs(x), y);
+      return place(-std::abs(x), y);
     if (std::abs(x) == f_)
-      return pixel(x, std::abs(y));
-    return pixel(x, y);
+      return place(x, std::abs(y));
+    return place(x, y);
   }
 
-  /// The vertex of each pixel: the first pixels of all places, in their order.
-  std::vector<Index> vertices() const {
-    std::vector<Index> result;
-    result.reserve(static_cast<std::size_t>(pixelCount()));
-    Index count = 0;
-    for (Index y = f_; y >= -f_; --y)
-      for (Index x = -f_; x <= f_; ++x) {
-        const Eigen::Index first = firstPixel(x, y);
-        result.push_back(first == pixel(x, y) ? count++ : entry(result, first));
-      }
-    return result;
-  }
-
-  /// Two triangles for each square of four pixels, between which the edges of the octahedron run.
-  Triangles triangles(const std::vector<Index>& vertices) const {
-    Triangles result(3, Eigen::Index{8} * f_ * f_);
-    Eigen::Index t = 0;
-    const auto at = [&](Index x, Index y) { return entry(vertices, pixel(x, y)); };
-    for (Index y = f_ - 1; y >= -f_; --y)
-      for (Index x = -f_; x < f_; ++x) {
-        const Index a = at(x, y);
-        const Index b = at(x + 1, y);
-        const Index c = at(x + 1, y + 1);
-        const Index d = at(x, y + 1);
-        if ((x < 0) == (y < 0)) {
-          result.col(t++) << a, b, d;
-          result.col(t++) << b, c, d;
-        } else {
-          result.col(t++) << a, b, c;
-          result.col(t++) << a, c, d;
-        }
-      }
-    return result;
-  }
-
-  GridSphere grid() const {
-    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, f_));
-    const std::vector<Index> vertex = vertices();
-    GridSphere grid{Positions(3, n), triangles(vertex), f_};
-    for (Eigen::Index i = 0; i < pixelCount(); ++i)
-      grid.directions.col(entry(vertex, i)) = direction(i);
-    return grid;
-  }
-
-private:
   Index f_;
 };
-
-// --- Random points -------------------------------------------------------------------------------
-
-/// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
-/// section 4); fewer where they would take much memory.
-std::size_t candidateCount(std::size_t count) {
-  constexpr std::size_t many = std::size_t{1} << 20;
-  return (count <= many ? 5 : 3) * count;
-}
-
-/// A number in [0, 1), which follows from its place alone, whichever thread asks.
-double randomNumber(std::uint64_t place) {
-  return static_cast<double>(internal::splitmix64(place) >> 11U) * 0x1p-53;
-}
-
-/// Points of a surface by area: one from each of as many parts of equal area.
-SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  const Triangles& triangles = surface.triangles();
-  std::vector<double> sums{0.0};  // of the areas up to each triangle; caps are the last ones
-  for (Index t = 0; t < triangles.cols() && !surface.isCap(t); ++t)
-    sums.push_back(sums.back() + 0.5 * internal::areaNormal(surface.points(), triangles, t).norm());
-  const std::uint64_t start = internal::splitmix64(seed);
-  const auto n = static_cast<Index>(count);
-  SurfacePoints result{Positions(3, n), Positions(3, n), std::vector<SphereLocation>(count)};
-  internal::forEachIndex(count, 0, [&](Index i) {
-    const std::uint64_t first = start + 3 * static_cast<std::uint64_t>(i);
-    const double place = (i + randomNumber(first)) / n * sums.back();
-    // The last triangle that begins at or before the place: one with an area.
-    const auto next = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
-    SphereLocation location;
-    location.triangle = static_cast<Index>(next - sums.begin() - 1);
-    const double root = std::sqrt(randomNumber(first + 1));
-    const double fraction = randomNumber(first + 2);
-    location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
-    const SurfaceSample sample = surface.evaluate(location);
-    result.points.col(i) = sample.position;
-    result.normals.col(i) = sample.normal;
-    entry(result.locations, i) = location;
-  });
-  return result;
-}
-
-void checkSide(const std::string& function, int side) {
-  internal::checkRange(function + ": side", side, 3, 16385);
-  if (side % 2 == 0)
-    throw InvalidInput(function + ": side = " + std::to_string(side) + " is even; use an odd one");
-}
-
-Positions pixelDirections(int side) {
-  const OctahedralSquare square(side / 2);
-  Positions directions(3, square.pixelCount());
-  for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    directions.col(i) = square.direction(i);
-  return directions;
-}
 
 }  // namespace
 
@@ -331,70 +263,13 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
   return mesh;
 }
 
-SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  internal::checkRange("sampleEvenly: count", count, 1, std::size_t{1} << 24U);
-  if (!(surface.area() > 0.0))
-    throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
-  const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
-  const std::vector<Index> kept =
-      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
-  SurfacePoints result{all.points(Eigen::all, kept), all.normals(Eigen::all, kept), {}};
-  for (const Index i : kept)
-    result.locations.push_back(entry(all.locations, i));
-  return result;
-}
-
-Positions geometryImageDirections(int side) {
-  checkSide("geometryImageDirections", side);
-  return pixelDirections(side);
-}
-
-GeometryImage makeGeometryImage(const SphereSurface& surface, int side) {
-  checkSide("makeGeometryImage", side);
-  return {side, surface.evaluate(pixelDirections(side)).positions};
-}
-
 GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
   const std::size_t count = internal::columnCount(mesh.points);
   const int frequency = gridFrequency(SphereGrid::Octahedral, count);
-  const int side = 2 * frequency + 1;
-  checkSide("geometryImageOfMesh", side);
   if (gridVertices(SphereGrid::Octahedral, frequency) != count)
     throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
                        " vertices are not those of an octahedral grid; use makeGridSphere()");
-  const OctahedralSquare square(frequency);
-  return {side, mesh.points(Eigen::all, square.vertices())};
-}
-
-ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
-  checkSide("meshOfGeometryImage", image.side);
-  const OctahedralSquare square(image.side / 2);
-  if (image.positions.cols() != square.pixelCount())
-    throw InvalidInput("meshOfGeometryImage: " + std::to_string(image.positions.cols()) +
-                       " pixels; an image of side " + std::to_string(image.side) + " has " +
-                       std::to_string(square.pixelCount()));
-  for (Eigen::Index i = 0; i < image.positions.cols(); ++i)
-    if (!image.positions.col(i).allFinite())
-      throw InvalidInput("meshOfGeometryImage: pixel " + std::to_string(i) +
-                         " is not finite; every pixel needs a position");
-
-  GridSphere grid = square.grid();
-  ResampledMesh mesh{grid.directions, {}, grid.directions, std::move(grid.triangles)};
-  // Sums of two and of four equal numbers are exact: where pixels agree, nothing changes.
-  Indexed<int> pixels(internal::columnCount(mesh.points), 0);
-  Eigen::Index i = 0;
-  for (const Index v : square.vertices()) {
-    const Vector3d position = image.positions.col(i++);
-    mesh.points.col(v) = pixels[v] == 0 ? position : Vector3d(mesh.points.col(v) + position);
-    ++pixels[v];
-  }
-  for (Index v = 0; v < pixels.count(); ++v)
-    mesh.points.col(v) /= pixels[v];
-
-  const std::size_t count = internal::columnCount(mesh.points);
-  const internal::CornerTable corners(mesh.triangles, count, internal::threadCount(0, count));
-  mesh.normals = internal::vertexNormals(mesh.points, mesh.triangles, mesh.directions, corners, 0);
-  return mesh;
+  return {2 * frequency + 1, mesh.points(Eigen::all, OctahedralSquare(frequency).vertices())};
 }
 
 }  // namespace spherical_param

@@ -19,15 +19,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Rotations that are tried: nearest ones are some 19 degrees apart.
+/// Number of rotations that are tried: nearest ones are about 19 degrees apart.
 constexpr Index kRotations = 2048;
-/// Samples of each surface that they are compared at.
+/// Samples of each surface for comparing them.
 constexpr Index kCoarseSamples = 64;
-/// Those of least error are improved, if they are not near a better one [rad].
+/// The best rotations that are farther than kApart [rad] from each other are improved.
 constexpr std::size_t kCandidates = 8;
 constexpr double kApart = 0.25;
 constexpr Index kMediumSamples = 256;
-/// The best of these is improved once more.
+/// The best result is improved once more.
 constexpr Index kFineSamples = 4096;
 
 struct Sample {
@@ -98,8 +98,8 @@ private:
   double scale_;
 };
 
-/// Rotations spread evenly over all there are (M. Alexa: "Super-Fibonacci Spirals: Fast,
-/// Low-Discrepancy Sampling of SO(3)", 2022), after that of nothing.
+/// The identity, then rotations spread evenly over all there are (M. Alexa: "Super-Fibonacci
+/// Spirals: Fast, Low-Discrepancy Sampling of SO(3)", 2022).
 Matrix3d rotationOf(Index i) {
   if (i == 0)
     return Matrix3d::Identity();
@@ -150,7 +150,7 @@ public:
     return values.squaredNorm();
   }
 
-  /// Follows the error down from a rotation. \return the least one, and where it is
+  /// Descends from a rotation. \return the least error, and the rotation that has it
   std::pair<double, Matrix3d> descend(const Matrix3d& from) const {
     Descent descent{this, from};
     Eigen::NumericalDiff<Descent> with_derivative(descent);

@@ -11,12 +11,12 @@ namespace spherical_param::internal {
 /// The mean squared distance of two surfaces on one sphere, x_A(u) against x_B(R u), each centred
 /// and scaled to area 1.
 ///
-/// The mean is that of the mean over A's surface and the mean over B's: which of them is the first
-/// makes no difference, and what is large on either counts as much as it is large.
+/// It is the average of the mean over A's surface and the mean over B's: both surfaces count alike,
+/// and each part of them by its area.
 double alignmentError(const SphereSurface& first, const SphereSurface& second,
                       const Eigen::Matrix3d& rotation, int threads);
 
-/// The rotation of least alignmentError(), of all there are.
+/// The rotation with the least alignmentError().
 ///
 /// \param pairs directions on the first and the second sphere that are to be the same place: their
 ///              mean squared distance [chord, of the unit sphere] counts as well, so that the

@@ -74,7 +74,7 @@ Vector3d onPlanes(const Vector3d& point, const PlaneSigns& signs, const std::vec
   return direction * (point.dot(direction) / direction.squaredNorm());
 }
 
-/// A corner of a polygon in a triangle of the mesh, known by how it comes about.
+/// A corner of a polygon in a triangle of the mesh, by its origin.
 struct Corner {
   enum class Kind { Vertex, OnEdge, Inside };
 
@@ -143,8 +143,8 @@ private:
     }
   }
 
-  /// The part of a polygon on one side of a plane, empty if there is no area left. A strictly
-  /// convex one stays so, which is why the order of its corners is all that there is to know.
+  /// The part of a polygon on one side of a plane, empty if it has no area. A strictly convex
+  /// polygon stays strictly convex, so that the order of its corners is enough to describe it.
   Polygon clipped(const Polygon& polygon, const CellSide& side) const {
     const auto sign_of = [&](const Corner& corner) {
       return side.sign * signAt(corner.signs, side.plane);
@@ -171,7 +171,7 @@ private:
     return result;
   }
 
-  /// Where a plane crosses a line that it does cross within the triangle.
+  /// The point where a plane crosses a line, which is within the triangle.
   Corner crossing(int line, int plane) const {
     return line < 3 ? pointOnEdge(line, plane) : pointInside(line - 3, plane);
   }
@@ -224,7 +224,7 @@ private:
     return corner;
   }
 
-  /// Takes a convex polygon apart.
+  /// Cuts a convex polygon into triangles.
   void addPolygon(const Polygon& polygon, Index cell) {
     if (polygon.empty())
       return;
@@ -284,7 +284,7 @@ private:
     CutVertex vertex;
     for (int k = 0; k < 3; ++k) {
       entry(vertex.vertices, k) = triangles_(k, triangle_);
-      // Rounding may make a weight negative that is next to nothing.
+      // Rounding may make a tiny weight negative.
       vertex.weights[k] = std::max(
           0.0, corner.direction.dot(sphere_.col(triangles_((k + 1) % 3, triangle_))
                                         .cross(sphere_.col(triangles_((k + 2) % 3, triangle_)))));

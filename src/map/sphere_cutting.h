@@ -25,8 +25,8 @@ struct CellSide {
   int sign = 1;
 };
 
-/// The convex cones that make up the sphere in a chart. Two that touch have a whole side, an edge
-/// from the centre or nothing more than the centre in common.
+/// The convex cones that make up the sphere in a chart. Two of them share a whole side, an edge
+/// from the centre, or the centre alone.
 using SphereCells = Indexed<std::vector<CellSide>>;
 
 bool isInCell(const PlaneSigns& signs, const std::vector<CellSide>& cell);
@@ -43,13 +43,13 @@ struct CutSphere {
 /// Cuts a mesh on the sphere along the sides of cells.
 ///
 /// A great circle is a straight line in the flat triangle below one on the sphere, and a part of a
-/// triangle in a convex cone is a convex polygon. What is where is decided by exact signs of the
-/// corners of the mesh alone, also for points that arise; hence the result is closed whatever the
+/// triangle in a convex cone is a convex polygon. Exact signs of the mesh's corners alone decide on
+/// which side of a plane a point is, also a new one. So the result is closed whatever the
 /// triangles, and a point on an edge is the same for both of its triangles.
 ///
 /// \param triangles 3 x m, a closed sphere; \param sphere 3 x v; no triangle is flipped.
-/// \param apex if >= 0: polygons with a corner where the signs of all planes up to this one are 0
-///             are taken apart from there.
+/// \param apex if >= 0: a polygon with a corner where the signs of all planes up to this one are 0
+///             is cut into triangles from that corner.
 CutSphere cutSphere(const Triangles& triangles, const Positions& sphere, const SphereCells& cells,
                     int apex = -1);
 

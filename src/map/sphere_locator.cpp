@@ -14,12 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of the coordinates of a unit vector after its normalisation, and of a corner after its own:
-/// each less than 1e-15.
+/// Bound of the rounding of a unit vector's coordinates and of a corner's, each less than 1e-15.
 constexpr double kRounding = 4e-15;
 
-/// The direction with a largest coordinate of 1/2 to 1, exactly the same, but that coordinates
-/// whose products would underflow, so that no triangle might hold it, are 0.
+/// The direction, scaled exactly to a largest coordinate of 1/2 to 1. Coordinates whose products
+/// would underflow become 0: with them, perhaps no triangle would hold the direction.
 Vector3d scaled(const Vector3d& direction) {
   constexpr double least = 1e-100;
   int exponent = 0;

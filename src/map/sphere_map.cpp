@@ -50,14 +50,14 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
   if (topology.components == 1 && topology.genus.value_or(0) > 0)
     throw InvalidInput(caller + "the mesh does not map to a sphere: its genus is " +
                        std::to_string(*topology.genus) +
-                       "; cut its handles, by handles = none of reconstruct() or by cutHandles()");
+                       "; cut its handles, by handles = none of reconstruct()");
   if (start.cols() > 0 && start.cols() != points.cols())
     throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
                        " vertices, but the start has " + std::to_string(start.cols()) +
                        "; give a unit vector for each");
   if (!points.allFinite())
     throw InvalidInput(caller + "a coordinate of a vertex is not finite; remove such points first");
-  // Also what was rounded to float passes.
+  // Vectors that were rounded to float pass.
   internal::checkUnitVectors("computeSphereMap", start, 1e-3);
   if (topology.isSphere())
     return std::nullopt;
@@ -86,8 +86,8 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
 Vector3d kernelPoint(const Positions& sphere, const std::vector<MapCorner>& ring) {
   const std::size_t k = ring.size();
   const auto at = [&](std::size_t i) -> Vector3d { return sphere.col(ring[i % k].neighbor); };
-  // As rays. What the two edges at the first vertex leave of the sphere is a lune, from that vertex
-  // to its antipode; on its sides are the points at a right angle to both ends.
+  // Points are rays. The two edges at the first vertex bound a lune, from that vertex to its
+  // antipode; the middles of its sides are at a right angle to both ends.
   const Vector3d apex = at(0);
   // The interior is to the left of the edge out, and to the left of the edge in.
   const Vector3d out = (at(1) - apex * apex.dot(at(1))).normalized();
@@ -217,14 +217,13 @@ public:
   }
 
 private:
-  /// Areas alone do not say where in its ring a vertex is best.
+  /// Areas alone do not determine the place of a vertex in its ring.
   static constexpr double kMinAngleWeight = 0.02;
-  /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
-  /// more triangles have just their areas, but the rougher is the map: others next to them are
-  /// sheared for it.
+  /// Fraction of the weight of areas for the ratio; the rest is for the logarithm. With a larger
+  /// rest more triangles have exactly their areas, but others next to them are sheared more.
   static constexpr double kRatioFraction = 0.7;
-  /// Areas weigh no more than this while there are vertices that came just now: triangles that all
-  /// have their areas leave each other no room to move, whatever their shapes are.
+  /// Largest weight of areas in the first sweeps after vertices were inserted: triangles that have
+  /// their areas already leave each other no room to move.
   static constexpr double kMildAreaWeight = 0.7;
   static constexpr int kMildSweeps = 2;
 
@@ -303,7 +302,7 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
   };
   take((rotation * sphere).colwise().normalized());
   if (map.distortion.flipped_triangles > 0)
-    take(sphere);  // flipped by the rounding of the rotation alone
+    take(sphere);  // only the rounding of the rotation flipped them
   internal::reportFraction(report, 1.0);
   return map;
 }

@@ -11,7 +11,7 @@ namespace spherical_param::internal {
 /// the other.
 struct SphereOverlay {
   Positions directions;           ///< 3 x w: vertices of the first, others of the second, crossings
-  Indexed<SphereLocation> first;  ///< w, places in the first mesh, if possible not in a cap
+  Indexed<SphereLocation> first;  ///< w, places in the first mesh, not in a cap if possible
   Indexed<SphereLocation> second;   ///< w, the same in the second mesh
   Indexed<Index> first_triangles;   ///< of each face, in the first mesh
   Indexed<Index> second_triangles;  ///< of each face, in the second mesh

@@ -98,7 +98,7 @@ struct SphereSurface::Data {
         locator(sphere, triangles, thread_limit) {
     const std::size_t count = internal::columnCount(points);
     const int threads = internal::threadCount(thread_limit, count);
-    // Caps have no say in what the surface is like at their loops.
+    // Caps do not shape the surface at their loops.
     const internal::CornerTable corners(triangles.leftCols(mesh_triangles), count, threads);
     normals = internal::vertexNormals(points, triangles, sphere, corners, thread_limit);
     if (options.fit == SurfaceFit::Smooth)
@@ -199,7 +199,7 @@ double SphereSurface::coverage() const {
   double openings = 0.0;
   for (Eigen::Index t = data_->mesh_triangles; t < data_->triangles.cols(); ++t)
     openings += solidAngle(data_->sphere, data_->triangles, t);
-  // A mesh has a part of the sphere, be it lost in rounding.
+  // More than 0 also where rounding loses the mesh's part of the sphere.
   constexpr double least = 1e-12;
   return std::max(least, 1.0 - openings / (4.0 * kPi));
 }

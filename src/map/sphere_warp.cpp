@@ -18,23 +18,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Landmarks collide if they come nearer to each other than this fraction of the least of their
-/// distances at the beginning and the end. Detours around each other brought no landmark more to
-/// its place: of 945, random pairs of seven models, 883 without them and 880 with them.
+/// Landmarks collide if they come nearer to each other than this fraction of their distance at the
+/// beginning or at the end, whichever is less. Detours around each other do not help.
 constexpr double kMinApproach = 0.25;
-/// Places on their ways where their distances are examined.
+/// Number of places on two paths where the distance is examined.
 constexpr int kPathSamples = 48;
 /// The longest and the shortest step along the paths [fraction of the path].
 constexpr double kMaxStep = 1.0 / 16.0;
 constexpr double kMinStep = 1e-3;
-/// A field's support, in distances of landmarks and in ways that they go [chord].
+/// Radius of a field's support: a multiple of the distances between landmarks, and of their paths'
+/// lengths.
 constexpr double kSupport = 4.0;
-/// Rounds over flipped triangles after a step. Without them 777 of the 945 arrive.
+/// Rounds over flipped triangles after a step.
 constexpr int kRounds = 12;
-/// Steps towards the middle of the kernel of a vertex's ring.
+/// Number of steps towards the middle of the kernel of a vertex's ring.
 constexpr int kKernelSteps = 40;
 
-/// The way of a landmark: an arc.
+/// The path of a landmark: an arc.
 struct Path {
   Landmark* landmark;
   Vector3d from, to;
@@ -66,8 +66,8 @@ bool collide(const Path& one, const Path& other) {
   return false;
 }
 
-/// A tangential field on the sphere: the sum of vectors of which each counts the less the farther
-/// its centre is, without the part along the radius.
+/// A tangential field on the sphere: the sum of vectors, each weighted by the distance from its
+/// centre, without the part along the radius.
 class Field {
 public:
   /// The field that has given tangential values at its centres. \param support [chord]
@@ -218,7 +218,7 @@ public:
   }
 
   /// Moves the sphere until all landmarks are at the ends of their paths.
-  /// \return a flipped triangle that no short step leaves without, if there is one
+  /// \return a triangle that stays flipped however short the step is, if there is one
   std::optional<Index> run(const FractionReport& report) {
     double step = kMaxStep;
     for (double t = 0.0; t < 1.0;) {
@@ -243,7 +243,7 @@ public:
   double worst() const { return worst_; }
 
 private:
-  /// Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
+  /// Wider than the paths, so that the surroundings are not squeezed; at most the diameter.
   static double supportOf(const std::vector<Path>& paths) {
     double widest = 0.0;
     for (const Path& path : paths) {
@@ -313,7 +313,7 @@ SphereWarp moveLandmarks(Positions& sphere, const Triangles& triangles,
       paths.push_back(path);
   }
   double reported = 0.0;
-  // A motion that begins again does not report less than before.
+  // A motion that starts again must not report less than before.
   const FractionReport ascending = [&](double fraction) {
     reported = std::max(reported, fraction);
     reportFraction(report, reported);

@@ -12,22 +12,21 @@ namespace spherical_param::internal {
 struct Landmark {
   Index vertex = 0;
   Eigen::Vector3d target = Eigen::Vector3d::UnitX();  ///< unit vector
-  std::string fault;  ///< why it did not arrive; empty: it is just there
+  std::string fault;                                  ///< why it did not arrive; empty: it did
 };
 
-/// What the motion of landmarks comes to.
+/// The result of moving landmarks.
 struct SphereWarp {
   bool is_flipped = false;  ///< a triangle was flipped before, and still is
-  double worst = 0.0;  ///< largest distance by which a step missed the place of a landmark, before
-                       ///< that was put there [rad]
+  double worst = 0.0;       ///< largest distance by which a step missed a landmark's place [rad]
 };
 
 /// Moves the vertices of a mesh on the sphere, one to one, such that some come to given places.
 ///
 /// The landmarks move along arcs and carry the sphere with them: in each of many steps every point
 /// moves along the tangential field of least norm of Wendland's kernel (1995) of the chord that
-/// takes the landmarks on their way. Where a step flips triangles all the same, vertices beside
-/// them are moved between their neighbours; a step that leaves one flipped is made shorter.
+/// takes the landmarks on their way. Where a step flips triangles, vertices beside them are moved
+/// between their neighbours; a step that leaves a triangle flipped is retried with half the length.
 ///
 /// \param sphere 3 x v, unit vectors; \param triangles closed, manifold, of genus 0.
 /// \param landmarks different vertices, different targets; their faults are set.

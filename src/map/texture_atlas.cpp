@@ -62,7 +62,7 @@ double along(const std::array<int, 3>& axis, const Vector3d& point) {
 /// whole octants and faces: the charts are projective there, so that they keep great circles
 /// straight and turn no triangle over, however large it is. A triangle over the border of two
 /// octants would not wrap round, but it could be turned over. Longitude and latitude are cut along
-/// three more half meridians than they need: it is there that triangles take up the poles.
+/// three more half meridians than they need, so that triangles at the poles get corners there.
 SphereCells cellsOf(SphereChart chart) {
   if (chart == SphereChart::CubeMap)
     // x - y, x + y, x - z, x + z, y - z and y + z are planes 3 to 8.
@@ -138,7 +138,7 @@ struct Places {
     std::array<Vector2d, 3> places;
     for (std::size_t k = 0; k < 3; ++k)
       places[k] = coordinatesIn(options, cells[cell], cell, sphere.points[triangle[k]]);
-    // A pole is the whole upper or lower side of the image; each triangle has its part of that.
+    // A pole is the whole upper or lower side of the image; each triangle gets a part of that.
     for (std::size_t k = 0; k < 3; ++k)
       if (options.chart == SphereChart::Equirectangular && isPole(sphere.points[triangle[k]]))
         places[k].x() = (places[(k + 1) % 3].x() + places[(k + 2) % 3].x()) / 2.0;
@@ -374,7 +374,7 @@ Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& 
   for (Index i = 0; i < result.cols(); ++i) {
     const CutVertex& vertex = entry(atlas.vertices, i);
     auto column = result.col(i);
-    // What has no weight has no say, be it no number.
+    // Values without weight do not count, even if they are not finite.
     if (vertex.weights[0] == 1.0) {
       column = values.col(vertex.vertices[0]);
       continue;

@@ -76,7 +76,9 @@ public:
     });
   }
 
-  /// Gives pixels up to so far away from the triangles the colour of the nearest in one.
+  /// Gives pixels around the triangles the colour of the nearest pixel in one.
+  ///
+  /// \param gutter largest distance [pixels].
   void paintGutter(int gutter) {
     if (gutter == 0)
       return;

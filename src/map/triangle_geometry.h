@@ -34,7 +34,7 @@ inline bool fitsAt(const Eigen::Vector3d& place, Index v, const Positions& spher
   return fits;
 }
 
-/// What a triangle's corners have, by weights.
+/// The weighted sum of the values at a triangle's corners.
 template <typename Columns>
 Eigen::Vector3d blend(const Columns& columns, const Triangles& triangles, Eigen::Index t,
                       const Eigen::Vector3d& weights) {
@@ -44,7 +44,7 @@ Eigen::Vector3d blend(const Columns& columns, const Triangles& triangles, Eigen:
   return sum;
 }
 
-/// Weights of sum 1; where rounding left none, those of the middle.
+/// Weights scaled to sum 1; those of the middle if all are 0 by rounding.
 inline Eigen::Vector3d withSumOne(const Eigen::Vector3d& weights) {
   if (weights.sum() > 0.0)
     return weights / weights.sum();

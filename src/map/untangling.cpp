@@ -29,12 +29,6 @@ constexpr int kSweepsOfRound = 5;
 
 using Pairs = std::vector<std::array<Index, 2>>;
 
-Execution onThreads(int threads) {
-  Execution execution;
-  execution.threads = threads;
-  return execution;
-}
-
 /// The vertices of triangles, ascending.
 std::vector<Index> verticesOf(const std::vector<Index>& zone, const Triangles& triangles) {
   std::vector<Index> vertices;
@@ -95,7 +89,7 @@ public:
           slide(v);
       // Pairs that were there are among those of the zone.
       pairs = findSelfIntersectionsOf(mesh_.points, mesh_.triangles, trianglesAt(zone, corners_),
-                                      onThreads(threads_));
+                                      Execution{threads_});
       if (pairs.size() < best_pairs.size()) {
         best = mesh_;
         best_pairs = pairs;
@@ -197,15 +191,14 @@ std::size_t flipAround(Pairs& pairs, ResampledMesh& mesh, int threads) {
       continue;
     all += flips;
     mesh.triangles = flippable.triangles();
-    pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, Execution{threads});
   }
   return all;
 }
 
 }  // namespace
 
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
-                          const UntanglingOptions& options) {
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int requested) {
   const Eigen::Index n = mesh.points.cols();
   if (mesh.normals.cols() != n || mesh.directions.cols() != n)
     throw InvalidInput("untangle: " + std::to_string(n) + " points, " +
@@ -214,10 +207,10 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
                        " directions; give a mesh of resampleSurface()");
   internal::checkTriangles("untangle", mesh.triangles, n);
   const std::size_t count = internal::columnCount(mesh.points);
-  const int threads = internal::threadCount(options.threads, count);
-  Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, onThreads(threads));
+  const int threads = internal::threadCount(requested, count);
+  Pairs pairs = findSelfIntersections(mesh.points, mesh.triangles, Execution{threads});
   UntanglingReport report = Sliding(surface, mesh, threads).run(pairs);
-  if (options.flips && !pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
+  if (!pairs.empty() && checkTopology(mesh.triangles, count, threads).isSphere())
     report.flips = flipAround(pairs, mesh, threads);
   report.after = pairs.size();
   return report;

@@ -17,16 +17,16 @@ using Eigen::Vector3d;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 
-/// Neighbours of a vertex with more triangles do not add their own: a hub would have all vertices
-/// count for all.
+/// A neighbour with more triangles does not add its own neighbours: around a hub, every fit would
+/// take all vertices.
 constexpr std::size_t kMaxAround = 32;
-/// Heights of neighbours that leave something to be seen of how well five coefficients fit.
+/// Five coefficients fit fewer heights so well that the residual says nothing.
 constexpr std::size_t kMinNeighbors = 7;
 /// Root mean square of the residual in fractions of that of the heights: a quadric is sure below
 /// the first, and means nothing above the second. A fold of a plane has 0.2 to 0.4.
 constexpr double kSureResidual = 0.08;
 constexpr double kWrongResidual = 0.25;
-/// Residuals below this fraction of the length of the edges are no reason to be unsure.
+/// Residuals below this fraction of the length of the edges do not count.
 constexpr double kSmallResidual = 1e-3;
 /// Least ratio of the pivots of the equations.
 constexpr double kMinPivots = 1e-3;
@@ -104,7 +104,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
   const Vector5d solution = factors.solve(right);
   Eigen::Map<Vector5d>(quadric.coefficients.data()) = solution;
 
-  // What is left of the squares, for as many heights as are not used up.
+  // The residual for the degrees of freedom that five coefficients leave.
   const double n = indexCount(around);
   const double residual = std::sqrt(std::max(0.0, sum_of_squares - solution.dot(right)) /
                                     sum_of_weights * n / (n - 5.0));

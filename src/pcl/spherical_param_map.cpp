@@ -137,7 +137,7 @@ void addCoordinates(const spherical_param::TextureAtlas& atlas, pcl::TextureMesh
 
 }  // namespace
 
-void requireMap(const spherical_param::Surface& surface, HandlesOnSphere handles) {
+void requireMap(const spherical_param::Surface& surface) {
   const std::string problem = "the mesh has no map to one sphere: it ";
   if (surface.has_certain_triangles_only)
     throw InvalidInput(problem + "is a tangle; call setTopology(TopologyMode::Sphere), which maps "
@@ -146,7 +146,7 @@ void requireMap(const spherical_param::Surface& surface, HandlesOnSphere handles
     throw InvalidInput(problem + "is in " + std::to_string(surface.topology.components) +
                        " pieces; call setTopology(TopologyMode::Sphere), which joins them");
   const std::size_t count = surface.genus();
-  if (count > 0 && handles == HandlesOnSphere::Refused)
+  if (count > 0)
     throw InvalidInput(problem + "has " + std::to_string(count) +
                        (count == 1 ? " handle" : " handles") +
                        "; call setHandles(HandleMode::None), which cuts them");
@@ -166,7 +166,7 @@ pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOption
   spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
       surface, spherical_param::makeGridSphere(
                    options.grid, spherical_param::gridFrequency(options.grid, wanted, surface)));
-  spherical_param::untangle(surface, resampled, {true, threads});
+  spherical_param::untangle(surface, resampled, threads);
   pcl::PolygonMesh output;
   output.cloud = cloudOf(resampled.points, resampled.normals);
   output.polygons = polygonsOf(resampled.triangles);
@@ -210,25 +210,19 @@ pcl::TextureMesh textureMesh(const MappedMesh& mesh, const Positions& colors,
                              spherical_param::TextureImage& image) {
   spherical_param::BakeOptions bake = options.bake;
   bake.threads = threads;
-  spherical_param::TextureAtlas atlas =
+  const spherical_param::TextureAtlas atlas =
       spherical_param::makeTextureAtlas(mesh.triangles, mesh.map.sphere, options.atlas);
   spherical_param::TextureImage baked =
-      colors.cols() > 0
-          ? spherical_param::bakeColors(atlas, Positions(colors(Eigen::all, mesh.vertex_of)), bake)
-          : spherical_param::bakeCheckerboard(atlas, mesh.map.sphere, options.checkerboard_cells,
-                                              bake);
-  atlas = spherical_param::joinCuts(std::move(atlas), mesh);
-  spherical_param::Triangles triangles = mesh.triangles;
-  for (spherical_param::Index& v : triangles.reshaped())
-    v = mesh.vertex_of[static_cast<std::size_t>(v)];
-  const Positions points = mesh.points.leftCols(triangles.maxCoeff() + 1);
+      colors.cols() > 0 ? spherical_param::bakeColors(atlas, colors, bake)
+                        : spherical_param::bakeCheckerboard(atlas, mesh.map.sphere,
+                                                            options.checkerboard_cells, bake);
   Positions normals = spherical_param::atCutVertices(
-      atlas, spherical_param::areaWeightedNormals(points, triangles));
+      atlas, spherical_param::areaWeightedNormals(mesh.points, mesh.triangles));
   for (Eigen::Index i = 0; i < normals.cols(); ++i)
     normals.col(i).stableNormalize();
 
   pcl::TextureMesh output;
-  output.cloud = cloudOf(spherical_param::atCutVertices(atlas, points), normals);
+  output.cloud = cloudOf(spherical_param::atCutVertices(atlas, mesh.points), normals);
   output.tex_polygons = {polygonsOf(atlas.triangles)};
   output.tex_materials = {materialOf(options.image_file)};
   addCoordinates(atlas, output);

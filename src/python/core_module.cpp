@@ -6,7 +6,6 @@
 #include "python/arrays.h"
 #include "python/conversions.h"
 #include "python/files.h"
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_surface.h"
@@ -18,7 +17,6 @@
 #include <pybind11/stl.h>
 
 #include <cctype>
-#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <tuple>
@@ -119,99 +117,51 @@ void addLocations(const std::vector<SphereLocation>& locations, const char* of, 
   dict[py::str(of + std::string("_weights"))] = toArray(weights);
 }
 
-/// What remeshing gives, before it is taken to Python.
-struct Remeshed {
+py::dict remeshSurface(const MappedMesh& mapped, const std::string& grid, std::size_t count,
+                       const std::string& fit, int threads, const py::object& progress) {
+  const SphereGrid kind = valueOf<SphereGrid>(
+      grid, {{"icosahedral", SphereGrid::Icosahedral}, {"octahedral", SphereGrid::Octahedral}});
+  const SurfaceFit surface_fit = fitOf(fit);
   ResampledMesh mesh;
-  std::vector<SphereLocation> locations;
-  std::vector<std::array<Index, 2>> self_intersections;
   int frequency = 0;
   UntanglingReport untangling;
-};
-
-Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t points,
-                      int threads, Listener& listener) {
-  Remeshed result;
-  const GridSphere grid = makeGridSphere(kind, gridFrequency(kind, points, surface));
-  result.frequency = grid.frequency;
-  result.mesh = resampleSurface(surface, grid);
-  listener.step("resample", 1.0);
-  listener.step("untangle", 0.0);
-  result.untangling = untangle(surface, result.mesh, {true, threads});
-  listener.step("untangle", 1.0);
-  result.locations = surface.evaluate(result.mesh.directions).locations;
-  result.self_intersections =
-      findSelfIntersections(result.mesh.points, result.mesh.triangles, listener.execution(threads));
-  return result;
-}
-
-Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uint32_t seed,
-                      Listener& listener) {
-  Remeshed result;
-  SurfacePoints even = sampleEvenly(surface, points, seed);
-  listener.step("resample", 1.0);
-  result.mesh.points = std::move(even.points);
-  result.mesh.normals = std::move(even.normals);
-  result.mesh.triangles.resize(3, 0);
-  result.locations = std::move(even.locations);
-  result.mesh.directions.resize(3, result.mesh.points.cols());
-  for (std::size_t i = 0; i < result.locations.size(); ++i) {
-    const SphereLocation& location = result.locations[i];
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-    for (Eigen::Index corner = 0; corner < 3; ++corner)
-      direction += location.weights[corner] *
-                   surface.sphere().col(surface.triangles()(corner, location.triangle));
-    result.mesh.directions.col(static_cast<Eigen::Index>(i)) = direction.normalized();
-  }
-  return result;
-}
-
-py::dict remeshSurface(const MappedMesh& mesh, const std::string& grid, std::size_t count,
-                       const std::string& fit, std::uint32_t seed, int threads,
-                       const py::object& progress) {
-  const bool is_even = grid == "even";
-  const SphereGrid kind = grid == "octahedral" ? SphereGrid::Octahedral : SphereGrid::Icosahedral;
-  const SurfaceFit surface_fit = fitOf(fit);
+  std::vector<SphereLocation> locations;
+  std::vector<std::array<Index, 2>> self_intersections;
   Listener listener(progress);
-  const Remeshed remeshed = listener.run([&] {
+  listener.run([&] {
     listener.step("surface", 0.0);
-    const SphereSurface surface = surfaceOf(mesh, surface_fit, threads);
+    const SphereSurface surface = surfaceOf(mapped, surface_fit, threads);
     listener.step("surface", 1.0);
     listener.step("resample", 0.0);
-    return is_even ? spreadEvenly(surface, count, seed, listener)
-                   : remeshOnGrid(surface, kind, count, threads, listener);
+    frequency = gridFrequency(kind, count, surface);
+    mesh = resampleSurface(surface, makeGridSphere(kind, frequency));
+    listener.step("resample", 1.0);
+    listener.step("untangle", 0.0);
+    untangling = untangle(surface, mesh, threads);
+    listener.step("untangle", 1.0);
+    locations = surface.evaluate(mesh.directions).locations;
+    self_intersections =
+        findSelfIntersections(mesh.points, mesh.triangles, listener.execution(threads));
   });
-  py::dict dict("vertices"_a = toArray(remeshed.mesh.points),
-                "triangles"_a = toArray(remeshed.mesh.triangles),
-                "normals"_a = toArray(remeshed.mesh.normals),
-                "directions"_a = toArray(remeshed.mesh.directions),
-                "frequency"_a = is_even ? py::none() : py::cast(remeshed.frequency),
-                "self_intersections"_a = toArray(remeshed.self_intersections),
-                "self_intersections_before"_a = remeshed.untangling.before,
-                "moved"_a = remeshed.untangling.moved,
-                "flipped_edges"_a = remeshed.untangling.flips);
-  addLocations(remeshed.locations, "source", dict);
+  py::dict dict("vertices"_a = toArray(mesh.points), "triangles"_a = toArray(mesh.triangles),
+                "normals"_a = toArray(mesh.normals), "directions"_a = toArray(mesh.directions),
+                "frequency"_a = frequency, "self_intersections"_a = toArray(self_intersections),
+                "self_intersections_before"_a = untangling.before, "moved"_a = untangling.moved,
+                "flipped_edges"_a = untangling.flips);
+  addLocations(locations, "source", dict);
   return dict;
 }
 
-/// \param points of a mesh without a map, which may have handles; then `sphere` is a start of the
-///               map, or empty.
-py::dict textureAtlas(const std::optional<Positions>& points, const Triangles& triangles,
-                      const Positions& sphere, const std::string& chart, double margin) {
+py::dict textureAtlas(const Triangles& triangles, const Positions& sphere, const std::string& chart,
+                      double margin) {
   TextureAtlasOptions options;
   options.chart = valueOf<SphereChart>(chart, {{"octahedral", SphereChart::Octahedral},
                                                {"equirectangular", SphereChart::Equirectangular},
                                                {"cube", SphereChart::CubeMap}});
   options.margin = margin;
   Listener listener(py::none{});
-  const TextureAtlas atlas = listener.run([&] {
-    if (!points)
-      return makeTextureAtlas(triangles, sphere, options);
-    const CutMesh cut = cutHandles(*points, triangles);
-    SphereMapOptions map_options;
-    static_cast<Execution&>(map_options) = listener.execution(0);
-    const SphereMap map = computeSphereMap(cut.points, cut.triangles, sphere, map_options);
-    return joinCuts(makeTextureAtlas(cut.triangles, map.sphere, options), cut);
-  });
+  const TextureAtlas atlas =
+      listener.run([&] { return makeTextureAtlas(triangles, sphere, options); });
   std::vector<std::array<Index, 3>> corners;
   Positions weights(3, static_cast<Eigen::Index>(atlas.vertices.size()));
   for (std::size_t i = 0; i < atlas.vertices.size(); ++i) {
@@ -309,7 +259,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("measure_map_distortion", &measureDistortion, "points"_a, "triangles"_a, "sphere"_a,
              py::kw_only(), "threads"_a);
   module.def("remesh", &remeshSurface, "mesh"_a, py::kw_only(), "grid"_a, "count"_a, "fit"_a,
-             "seed"_a, "threads"_a, "progress"_a);
-  module.def("texture_coordinates", &textureAtlas, "points"_a, "triangles"_a, "sphere"_a,
-             py::kw_only(), "chart"_a, "margin"_a);
+             "threads"_a, "progress"_a);
+  module.def("texture_coordinates", &textureAtlas, "triangles"_a, "sphere"_a, py::kw_only(),
+             "chart"_a, "margin"_a);
 }

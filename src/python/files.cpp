@@ -81,8 +81,6 @@ py::dict readCloudFile(const std::string& path, const std::optional<std::string>
       "scalars"_a = scalars, "unused"_a = toArray(data.unused), "viewpoint"_a = data.viewpoint);
 }
 
-/// A mesh, or a plain cloud without triangles.
-///
 /// \param added  a mark of each vertex, or None
 /// \param offset None: what the format needs. \return what was subtracted from the points
 tools::Point writeMeshFile(const std::string& path, const Positions& points,
@@ -90,8 +88,7 @@ tools::Point writeMeshFile(const std::string& path, const Positions& points,
                            const std::optional<Array<std::uint8_t>>& colors,
                            const std::optional<Array<std::uint8_t>>& added,
                            const ScalarArrays& scalars, const std::optional<tools::Point>& offset) {
-  const tools::FileFormat format = tools::requireFormat(
-      path, triangles.cols() > 0 ? tools::FileUse::WriteMesh : tools::FileUse::WriteCloud);
+  const tools::FileFormat format = tools::requireFormat(path, tools::FileUse::WriteMesh);
   const tools::PointData data = toPointData(points, normals, colors, scalars);
   tools::MeshView mesh(data, triangles);
   const tools::Point taken_off =

@@ -5,7 +5,6 @@
 #include "map/map_shapes.h"
 #include "numbers.h"
 #include "paper_method.h"
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"
@@ -43,7 +42,6 @@ struct Inputs {
   Triangles triangles = triangulateSphere(spiralSphere(size));
   Triangles damaged = triangles;
   Mesh knot = bentTube(20.0, 2.2 * kPi, rings / 5 + 4);  // into itself
-  Mesh handle = {torusCloud(8, 5), torusTriangles(8, 5)};
   Mapped bumps = bumpy(spiralSphere(size / 4));
   Mapped few = firstBlob().over(spiralSphere(size / 30 + 30));
   Mapped many = firstBlob().over(spiralSphere(size / 4));
@@ -55,9 +53,6 @@ struct Inputs {
   MorphOptions morph = {};
   SphereGrid grid = SphereGrid::Octahedral;
   int frequency = 4;
-  bool flips = true;
-  int side = 9;  ///< of the geometry image
-  std::size_t samples = 1000;
   int degree = 12;  ///< of the harmonics
   double chart_margin = 0.1;
   BakeOptions bake = {100, 5, 0};
@@ -217,13 +212,6 @@ inline void addMaps(const Add& add) {
             "a direction is in a triangle");
     return numbers;
   });
-  add("sampleEvenly()", {}, [](const Inputs& in, const Execution& e) {
-    const SurfacePoints of =
-        sampleEvenly(in.few.surface(SurfaceFit::Linear, e.threads), in.samples, 7);
-    promise(of.locations.size() == static_cast<std::size_t>(of.points.cols()),
-            "each sample has a place");
-    return Numbers(of.points, of.normals);
-  });
   add("spherical harmonics", {}, [](const Inputs& in, const Execution& e) {
     SphericalHarmonics of = computeSphericalHarmonics(in.few.surface(), in.degree, e.threads);
     if (in.spoil_numbers)
@@ -239,19 +227,13 @@ inline void addMaps(const Add& add) {
     ResampledMesh mesh = resampleSurface(surface, grid);
     if (in.spoil_numbers)
       in.spoil_numbers(mesh.points);
-    untangle(surface, mesh, {in.flips, e.threads});
+    untangle(surface, mesh, e.threads);
     promise(isSphere(mesh.triangles, mesh.points) || !isSphere(grid.triangles, mesh.points),
             "the remeshed surface is a sphere");
     Numbers numbers(mesh.points, mesh.triangles);
     if (in.grid == SphereGrid::Octahedral)
       numbers.add(geometryImageOfMesh(mesh).positions);
     return numbers;
-  });
-  add("geometry images", {}, [](const Inputs& in, const Execution& e) {
-    GeometryImage image = makeGeometryImage(in.few.surface(in.fit, e.threads), in.side);
-    if (in.spoil_numbers)
-      in.spoil_numbers(image.positions);
-    return Numbers(image.positions, meshOfGeometryImage(image).normals);
   });
   for (const SphereChart chart :
        {SphereChart::Equirectangular, SphereChart::Octahedral, SphereChart::CubeMap})
@@ -275,20 +257,6 @@ inline void addMaps(const Add& add) {
       return Numbers(baked.pixels, baked.covered, place,
                      bakeCheckerboard(atlas, in.few.sphere, in.cells, bake).pixels);
     });
-  add("handle cutting", {}, [](const Inputs& in, const Execution&) {
-    Triangles triangles = in.handle.triangles;
-    if (in.spoil_triangles)
-      in.spoil_triangles(triangles);
-    const CutMesh cut = cutHandles(in.handle.points, triangles);
-    promise(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface(),
-            "a cut torus is an open surface");
-    const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
-    const TextureAtlas atlas =
-        joinCuts(makeTextureAtlas(cut.triangles, map.sphere, {SphereChart::Octahedral, 0.1}), cut);
-    const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
-    promise(topology.isSurface() && topology.genus == 1, "joined, it is a torus");
-    return Numbers(map.sphere, atlas.triangles);
-  });
 }
 
 /// The functions of some of the parts above.

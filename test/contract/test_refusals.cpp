@@ -52,8 +52,6 @@ TEST(Refusals, OfThreadsBeyondTheRangeWhoseEndIsTaken) {
        functionsOf({addReconstructions, addFunctionsOfTheCore, addMaps})) {
     if (function.name == "triangulateSphere()")  // on one thread
       continue;
-    if (function.name == "handle cutting")  // likewise
-      continue;
     SCOPED_TRACE(function.name);
     EXPECT_NO_THROW(function.run(inputs, Execution{1024}));
     for (const int threads : {-1, 1025})
@@ -161,7 +159,7 @@ TEST(Refusals, OfCapsAndPlacesThatDoNotFit) {
     expectRefused("location", [&] { surface.evaluate(SphereLocation{t, Vector3d::UnitX()}); });
 }
 
-TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
+TEST(Refusals, OfGridsOfWrongSizes) {
   for (const SphereGrid kind : {SphereGrid::Icosahedral, SphereGrid::Octahedral}) {
     // The largest that there is, for any number.
     const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
@@ -172,18 +170,6 @@ TEST(Refusals, OfGridsAndGeometryImagesOfWrongSizes) {
       expectRefused("makeGridSphere()", [&] { makeGridSphere(kind, frequency); });
     }
   }
-  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
-  for (const int side : {-3, 0, 1, 2, 4, 16386, 16387}) {
-    expectRefused("geometryImageDirections()", [&] { geometryImageDirections(side); });
-    expectRefused("makeGeometryImage()", [&] { makeGeometryImage(surface, side); });
-    expectRefused("side", [&] { meshOfGeometryImage({side, Positions(3, 9)}); });
-  }
-  GeometryImage image = makeGeometryImage(surface, 5);
-  image.positions(1, 7) = kInfinity;
-  expectRefused("pixel", [&] { meshOfGeometryImage(image); });
-  expectRefused("pixels", [&] { meshOfGeometryImage({5, Positions::Zero(3, 24)}); });
-  const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 3);
-  expectRefused("grid", [&] { geometryImageOfMesh(resampleSurface(surface, grid)); });
 }
 
 TEST(Refusals, OfResampledMeshesThatDoNotFit) {
@@ -194,15 +180,14 @@ TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   meshes[1].triangles(0, 0) = 38;
   meshes[2].normals = good.normals.leftCols(5);
   for (ResampledMesh& mesh : meshes)
-    expectRefused("untangle()", [&] {
-      untangle(surface, mesh, {true, &mesh == &meshes.back() ? -1 : 0});
-    });
+    expectRefused("untangle()", [&] { untangle(surface, mesh, &mesh == &meshes.back() ? -1 : 0); });
+  expectRefused("octahedral", [&] {
+    geometryImageOfMesh(resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 3)));
+  });
 }
 
-TEST(Refusals, OfSamplesAndSeriesOutOfRange) {
+TEST(Refusals, OfSeriesOutOfRange) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
-  const SphereSurface point = surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); });
-  expectRefused("without area", [&] { sampleEvenly(point, 5); });
   const Vector3d x = Vector3d::UnitX();
   for (const int degree : {-1, 513})
     expectRefused("degree", [&] { sphericalHarmonicsAt(x, degree); });
@@ -284,8 +269,6 @@ TEST(Refusals, OfOptionsNameThemAndEndsOfTheRangesAreTaken) {
     expect(morph, "samples", [](Inputs& in, double x) { set(in.morph.samples, x); }, {12},
            {0, 11, (1 << 24) + 1});
     expect(morph, "t ", [](Inputs& in, double x) { in.time = x; }, {-1, 2}, {kNan, kInfinity});
-    expect("sampleEvenly()", "count", [](Inputs& in, double x) { set(in.samples, x); }, {1},
-           {0, (1 << 24) + 1});
     expect("spherical harmonics", "degree", [](Inputs& in, double x) { set(in.degree, x); }, {0},
            {-1, 513});
     const char* const texture = "textures";

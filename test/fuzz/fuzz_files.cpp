@@ -1,10 +1,9 @@
-// Every way in which the tools read a file, of any content. FUZZED_EXTENSION says which: a cloud, a
-// geometry image (.tiff), or pairs of points of two clouds (.txt).
+// Every way in which the tools read a file, of any content. FUZZED_EXTENSION says which: a cloud,
+// or pairs of points of two clouds (.txt).
 
 #include "common/cloud_reader.h"
 #include "common/cloud_reconstruction.h"
 #include "common/errors.h"
-#include "common/geometry_image_file.h"
 #include "common/point_pairs.h"
 #include "fuzz_input.h"
 
@@ -72,14 +71,6 @@ void readAsCloud(const std::string& path) {
           "the same file gives the same points");
 }
 
-void readAsGeometryImage(const std::string& path) {
-  const spherical_param::GeometryImage image = readGeometryImage(path);
-  require(image.side >= 3 && image.side % 2 == 1, "the side is odd");
-  require(image.positions.cols() == static_cast<Eigen::Index>(image.side) * image.side,
-          "each pixel has a position");
-  require(image.positions.allFinite(), "positions are finite");
-}
-
 /// The mesh of a cloud on a sphere, one point of it twice and one not finite: these are no vertices
 /// of their own.
 CloudReconstruction meshedSphere(int count) {
@@ -118,9 +109,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   static MemoryFile file(extension);
   file.fill(bytes, size);
   try {
-    if (extension == ".tiff")
-      readAsGeometryImage(file.path());
-    else if (extension == ".txt")
+    if (extension == ".txt")
       readAsPointPairs(file.path());
     else
       readAsCloud(file.path());

@@ -67,8 +67,6 @@ Inputs inputsFrom(Bytes& bytes, const Positions& points) {
   const Positions second = pointsFrom(of_second);
   in.many =
       mappedFrom(of_second, second.leftCols(std::min<Eigen::Index>(second.cols(), kMaxOfSecond)));
-  for (double& x : in.handle.points.reshaped())
-    x = bytes.byte();
 
   in.options.outliers = bytes.choice<OutlierMode>(4);
   in.options.outlier_sigma = bytes.realOr(4.0);
@@ -90,9 +88,6 @@ Inputs inputsFrom(Bytes& bytes, const Positions& points) {
     in.morph.samples = 1000;
   in.grid = bytes.choice<SphereGrid>(2);
   in.frequency = atMost(4, bytes.integerOr(2), 1 << 15);
-  in.flips = bytes.oneIn(2);
-  in.side = atMost(17, bytes.integerOr(5) | 1, 16385);
-  in.samples = bytes.byte();
   in.degree = atMost(8, bytes.integerOr(4), 512);
   in.chart_margin = bytes.realOr(1.0 / 64);
   in.bake = {atMost(40, bytes.integerOr(16), 16384), bytes.integerOr(2), 0};

@@ -75,9 +75,6 @@ TEST(Caps, AreNoPartOfTheSurface) {
     EXPECT_FALSE(surface.isCap(surface.locate(open.sphere.col(i)).triangle));
   for (Eigen::Index i = 0; i < open.caps.cols(); ++i)
     EXPECT_TRUE(surface.isCap(surface.locate(open.caps.col(i)).triangle));
-  const SurfacePoints even = sampleEvenly(surface, 500);
-  for (const SphereLocation& location : even.locations)
-    EXPECT_FALSE(surface.isCap(location.triangle));
 }
 
 TEST(Caps, ResamplingLeavesTheOpeningsOpen) {

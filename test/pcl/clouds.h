@@ -80,13 +80,9 @@ inline Triangles trianglesOf(const Polygons& polygons) {
   return triangles;
 }
 
-/// Whether the polygons are a closed mesh of this genus over this number of points.
-inline bool isClosed(const Polygons& polygons, std::size_t points, int genus) {
-  return spherical_param::test::isSurfaceOverAll(trianglesOf(polygons), static_cast<int>(points),
-                                                 genus);
-}
+/// Whether the polygons are a closed mesh of genus 0 over all points.
 inline bool isSphere(const Polygons& polygons, std::size_t points) {
-  return isClosed(polygons, points, 0);
+  return spherical_param::test::isSphereOverAll(trianglesOf(polygons), static_cast<int>(points));
 }
 
 template <typename PointT>

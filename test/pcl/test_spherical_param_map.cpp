@@ -98,8 +98,7 @@ TEST_F(SphericalParamRemesh, MeshesWithHandlesAreRefusedAndCutOnesAreNot) {
   spherical_param::Surface pieces;
   pieces.topology.components = 2;
   for (const spherical_param::Surface& surface : {tangle, pieces})
-    EXPECT_THROW(pcl::detail::requireMap(surface, pcl::detail::HandlesOnSphere::Cut),
-                 spherical_param::InvalidInput);
+    EXPECT_THROW(pcl::detail::requireMap(surface), spherical_param::InvalidInput);
   reconstruction.setHandles(spherical_param::HandleMode::None);
   ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh));
   EXPECT_TRUE(isSphere(mesh.polygons, mesh.cloud.width));
@@ -290,20 +289,6 @@ TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThem) {
   options.checkerboard = true;
   ASSERT_TRUE(texture<pcl::PointXYZRGB>());
   EXPECT_EQ(image.pixels, board.pixels);
-}
-
-TEST_F(SphericalParamTexture, AMeshWithHandlesIsCutInTheImageAlone) {
-  Reconstruction reconstruction = reconstructionOf(makeTorus(16));
-  ASSERT_TRUE(pcl::textureSphericalParam(reconstruction, mesh, image, options));
-  EXPECT_EQ(reconstruction.getResult().surface().genus(), 1U);
-  const auto points = cloudOf<pcl::PointNormal>(mesh.cloud);
-  EXPECT_TRUE(isClosed(mesh.tex_polygons[0], points.size(), 1));
-  ASSERT_GT(points.size(), 512U);
-  for (std::size_t v = 0; v < 512; ++v) {
-    const Eigen::Vector3f ring(points[v].x, points[v].y, 0.0F);
-    const Eigen::Vector3f outward = points[v].getVector3fMap() - ring.normalized();
-    EXPECT_GT(points[v].getNormalVector3fMap().dot(outward.normalized()), 0.9F);
-  }
 }
 
 TEST_F(SphericalParamTexture, AFailureLeavesNothingButTheHeader) {

@@ -21,7 +21,6 @@ class BadInput(ToolTest):
         super().setUp()
         write_xyz("in.xyz", ellipsoid(500))
         write_ply("in.ply", ellipsoid(20))
-        write("in.tif", "II")
         write("kept.ply", "kept")
 
     def check_ends_refused(self, rows):
@@ -90,8 +89,7 @@ class BadInput(ToolTest):
                 "out_%03d.ply -json j_%03d.json": "is a pattern, but one report has all parts"},
             "scan": {"": "the shape is missing", "sphere": "the output file", "cube out.pcd": "unknown shape 'cube'",
                      "sphere out.stl": "extension", "sphere out.ply -truth ./out.ply": "would overwrite"},
-            "remesh in.tif": {"out.tif": "geometry image"},
-            "remesh in.xyz": {"out.png": "out.png", "out.stl -grid even": "out.stl",
+            "remesh in.xyz": {"out.png": "out.png", "out.pcd": "out.pcd",
                               "out.ply -harmonics ''": "-harmonics", "out.ply -harmonics out.ply": "would overwrite"},
             "morph in.ply in.xyz": {
                 **{f"{name}.ply": "% that is not a frame number" for name in ("m_%s", "m_%d_%d", "m_%12d", "m_%%")},
@@ -115,11 +113,9 @@ class BadInput(ToolTest):
             "scan sphere out.pcd": {
                 "more": "one word too many: 'more'", "-points 3": "option -points: '3'",
                 "-seed -1": "option -seed: '-1'"},
-            "remesh in.xyz out.xyz -grid even": {"-points 3": "-points", "-points 16777217": "-points"},
-            "remesh in.xyz out.tif": {"-side 10": "10 is even", "-side 1": "-side"},
             "remesh in.xyz out.ply": {
-                "-grid cubic": "'cubic' is not allowed", "-harmonics c.json -degree 513": "-degree",
-                "-map-sweeps 1001": "-map-sweeps"},
+                "-grid cubic": "'cubic' is not allowed", "-points 3": "-points", "-map-sweeps 1001": "-map-sweeps",
+                "-harmonics c.json -degree 513": "-degree"},
             "morph in.ply in.xyz m.ply": {
                 "-frames 1": "-frames", "-align yes": "option -align: 'yes'",
                 "-connectivity resampled -samples 11": "-samples"},
@@ -148,11 +144,7 @@ class BadInput(ToolTest):
                 "-time-limit 1 -method paper": "-time-limit does nothing with -method paper"},
         })  # fmt: skip
         for line, options in {
-            "remesh in.xyz out.ply": ["-side 9", "-degree 5", "-area-weight 1 -map-sweeps 0"],
-            "remesh in.xyz out.ply -grid even": ["-series", "-sphere s.ply"],
-            "remesh in.xyz out.tif": ["-side 9 -points 9", "-series", "-offset 1,2,3", "-ascii"],
-            "remesh in.tif out.ply": ["-points 9", "-fit linear", "-k 9", "-map-sweeps 2", "-grid even", "-series",
-                                      "-harmonics c.json"],
+            "remesh in.xyz out.ply": ["-degree 5", "-area-weight 1 -map-sweeps 0"],
             "morph in.ply in.xyz m.ply": ["-samples 100"],
             "texture in.ply out.glb": ["-ascii"],
         }.items():  # fmt: skip
@@ -172,6 +164,7 @@ class BadInput(ToolTest):
             "reconstruction both.xyz out%03d.ply -parts each -sphere s%03d.ply":
                 "part 2 of 'both.xyz' has no map to one sphere",
             "remesh torus.xyz out.ply -handles auto": cause,
+            "texture torus.xyz out.glb": cause,
             "morph in.xyz torus.xyz out.ply -handles auto": cause,
             "reconstruction tangle.xyz out.ply -sphere s.ply":
                 "'tangle.xyz' has no map to one sphere: it is a tangle",
@@ -198,10 +191,7 @@ class BadInput(ToolTest):
                 "cannot mesh 'flat.xyz': all points lie in one plane",
             "reconstruction outliers.xyz out.ply -topology sphere -outliers 0":
                 "all points lie in one plane (left out: 1 stray point)",
-            "remesh no.tif out.ply": "no.tif",
-            "remesh in.tif out.ply": "in.tif",
             "remesh flat.xyz out.ply": "cannot mesh 'flat.xyz'",
-            "remesh open.xyz out.tif -surface open": "a geometry image has no openings",
             "morph in.ply flat.xyz m.ply": "cannot mesh 'flat.xyz'",
         })  # fmt: skip
 
@@ -252,8 +242,7 @@ class BadInput(ToolTest):
                            (15000, {"remesh in.xyz kept.ply -harmonics c.json": full}),
                            (30000, {"reconstruction in.xyz kept.ply -sphere s.stl": f"cannot write 's.stl'{full}",
                                     "reconstruction in.xyz kept.ply -json r.json -method paper -tolerance 0":
-                                        f"cannot write 'r.json'{full}",
-                                    "remesh in.xyz a.tif -side 65": full})):  # fmt: skip
+                                        f"cannot write 'r.json'{full}"})):  # fmt: skip
             self.check_refused(FAILED, rows, **full_disk(size))
         self.check_output_refused({"reconstruction in.xyz kept.ply": "standard output",
                                    "scan sphere out.pcd -points 99": "standard output"})  # fmt: skip

@@ -1,8 +1,9 @@
-"""pcl_spherical_param_remesh: grids, geometry images, harmonics and report."""
+"""pcl_spherical_param_remesh: grids, harmonics and report."""
 
 import pathlib
 import struct
 import unittest
+import zlib
 
 import numpy as np
 from tool_test import (Mesh, ToolTest, call, ellipsoid, lengths, read_json, report_of, run, volume, write_ply,
@@ -26,27 +27,24 @@ def directions_of(points):
     return (points - CENTER) / AXES
 
 
-class Tiff:
-    """A TIFF file in little-endian order as TIFF 6.0 describes it, taken apart without the tools."""
-
-    def __init__(self, name):
-        self.data = pathlib.Path(name).read_bytes()
-        assert self.data[:4] == b"II*\0"
-        self.values, self.places = {}, {}
-        for at in range(10, 10 + 12 * struct.unpack_from("<H", self.data, 8)[0], 12):
-            tag, kind, count = struct.unpack_from("<HHI", self.data, at)
-            if kind in (3, 4):
-                values = struct.Struct(f"<{count}{'HI'[kind - 3]}")
-                place = struct.unpack_from("<I", self.data, at + 8)[0] if values.size > 4 else at + 8
-                self.values[tag], self.places[tag] = values.unpack_from(self.data, place), at + 8
-
-    def changed(self, tag, value):
-        """The same file with another value, of type and number as before."""
-        place = self.places[tag]
-        return self.data[:place] + struct.pack("<H", value) + self.data[place + 2 :]
-
-    def pixels(self):
-        return np.frombuffer(self.data, "<f4", 3 * self.values[256][0] ** 2, self.values[273][0]).reshape(-1, 3)
+def decode_16_bits(png):
+    """Rows, columns and channels of a PNG of 16 bits a channel. Needed as matplotlib reads 8 bits of them."""
+    size = struct.unpack(">II", png[16:24])
+    data, at = b"", 8
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at : at + 8])
+        data += png[at + 8 : at + 8 + length] if kind == b"IDAT" else b""
+        at += length + 12
+    row, rows = bytearray(6 * size[0]), []
+    lines = zlib.decompress(data)
+    for start in range(0, len(lines), len(row) + 1):
+        filtered, above, row = lines[start], row, bytearray(lines[start + 1 : start + 1 + len(row)])
+        for i in range(len(row)):  # PNG specification, section 9.2
+            left, corner = (row[i - 6], above[i - 6]) if i >= 6 else (0, 0)
+            paeth = min((left, above[i], corner), key=lambda each: abs(left + above[i] - corner - each))
+            row[i] = (row[i] + (0, left, above[i], (left + above[i]) // 2, paeth)[filtered]) % 256
+        rows.append(np.frombuffer(bytes(row), ">u2").reshape(-1, 3))
+    return np.stack(rows)
 
 
 class RemeshTool(ToolTest):
@@ -80,75 +78,23 @@ class RemeshTool(ToolTest):
                 self.assertNotIn("nx", sphere)
                 self.assertLess(np.abs(lengths(sphere.points) - 1).max(), 2e-7)
 
-    def test_even_clouds_have_that_many_points_on_the_surface(self):
-        cloud = self.remeshed("-grid", "even", "-points", 400)
-        self.assertEqual([len(cloud.points), len(cloud.triangles)], [400, 0])
-        self.check_on_the_surface(cloud)
+    def test_geometry_image_has_the_vertices_of_the_octahedral_grid_in_16_bits(self):
+        report = report_of("remesh", "in.ply", "out.ply", "-grid", "octahedral", "-points", 258, "-image", "out.png")
+        image = report["image"]
+        self.assertEqual(image["side"], 17)
+        points = Mesh("out.ply").points
+        self.assertLess(np.abs(points.min(axis=0) - image["low"]).max(), 1e-6)
+        self.assertLess(np.abs(points.max(axis=0) - image["high"]).max(), 1e-6)
+        pixels = decode_16_bits(pathlib.Path("out.png").read_bytes()).reshape(-1, 3)
+        self.assertEqual(len(pixels), 17 * 17)
+        low, high = np.array(image["low"]), np.array(image["high"])
+        positions = low + pixels / 65535 * (high - low)
+        nearest = lengths((positions[:, None] - points[None]).reshape(-1, 3)).reshape(len(positions), -1)
+        self.assertLess(nearest.min(axis=1).max(), 1e-4)  # each pixel is a vertex, and each vertex a pixel
+        self.assertLess(nearest.min(axis=0).max(), 1e-4)
 
     def test_output_has_as_many_points_as_the_mesh_unless_told(self):
         self.assertEqual(report_of("remesh", "in.ply", "out.ply")["points"], 492)
-        self.assertEqual(report_of("remesh", "in.ply", "out.tif")["points"], 486)
-        self.check_entries(report_of("remesh", "in.ply", "out.pcd", "-grid", "even"),
-                           {"points": 500, "triangles": 0, "closed": None})  # fmt: skip
-
-    def test_mesh_of_a_geometry_image_is_the_octahedral_grid_bit_for_bit(self):
-        run("remesh", "in.ply", "image.tif", "-points", 1000)
-        self.check_entries(report_of("remesh", "in.ply", "sized.TIFF", "-side", 33),
-                           {"points": 32 * 32 + 2, "grid": {"kind": "octahedral", "side": 33},
-                            "options": {"grid": None}})  # fmt: skip
-        self.assertTrue(pathlib.Path("sized.TIFF").read_bytes() == pathlib.Path("image.tif").read_bytes())
-        self.check_entries(report_of("remesh", "image.tif", "back.ply", "-sphere", "sphere.ply"),
-                           {"points": 1026, "closed": True, "grid": {"side": 33}})  # fmt: skip
-        grid = self.remeshed("-grid", "octahedral", "-points", 1000)
-        self.same(Mesh("back.ply").points, grid.points)
-        for name in ("back.ply", "sphere.ply"):
-            self.same(Mesh(name).triangles, grid.triangles)
-
-    def test_a_geometry_image_is_a_tiff_file_of_three_floats_a_pixel(self):
-        for side in (3, 33, 301):
-            run("remesh", "in.ply", "image.tif", "-side", side)
-            tiff = Tiff("image.tif")
-            self.check_entries(tiff.values, {256: (side,), 257: (side,), 258: (32, 32, 32), 259: (1,), 277: (3,),
-                                             284: (1,), 339: (3, 3, 3)})  # fmt: skip
-            self.assertEqual(sum(tiff.values[279]), 12 * side**2)
-            self.assertEqual(len(tiff.values[273]) > 1, side == 301)  # strips
-            call("remesh", "image.tif", "back.ply")  # the smallest is an octahedron
-            self.assertEqual(*(set(map(tuple, points)) for points in (tiff.pixels(), Mesh("back.ply").points)))
-
-    def test_geometry_images_of_other_programs_are_read_in_either_byte_order(self):
-        corpus = pathlib.Path(__file__).resolve().parents[1] / "fuzz" / "corpus" / "geometry_image"
-        for name in ("little", "big", "strips"):
-            pathlib.Path("image.tif").write_bytes((corpus / name).read_bytes())
-            call("remesh", "image.tif", "back.ply")
-            # Pixel i is at i (1, 0.5, -1). On the sides two that are opposite are one vertex, in their middle, as are
-            # the four corners.
-            first = Mesh("back.ply").points[:, :1]
-            self.assertTrue(np.array_equal(Mesh("back.ply").points, first * (1, 0.5, -1)), name)
-            half = round((len(first) - 2) ** 0.5) // 2
-            pixels = np.arange((2 * half + 1) ** 2).reshape(2 * half + 1, -1)
-            sides = np.repeat([*pixels[[0, -1], half], *pixels[half, [0, -1]]], half)
-            expected = np.concatenate([pixels[1:-1, 1:-1].ravel(), sides, [pixels[half, half]]])
-            self.assertEqual(sorted(first[:, 0]), sorted(expected), name)
-
-    def test_what_is_no_geometry_image_is_refused(self):
-        run("remesh", "in.ply", "image.tif", "-side", 9)
-        tiff = Tiff("image.tif")
-        for content, cause in ((b"", "empty"),
-                               (b"no image at all", "not a TIFF file"),
-                               (tiff.data[:100], "ends too early"),
-                               (tiff.data[:-1], "ends too early"),
-                               (tiff.changed(256, 8), "8 x 9 pixels"),
-                               (tiff.changed(258, 60000), "ends too early"),
-                               (tiff.changed(259, 5), "compressed"),
-                               (tiff.changed(273, 60000), "ends too early"),
-                               (tiff.changed(277, 1), "1 sample a pixel"),
-                               (tiff.changed(278, 0), "no rows"),
-                               (tiff.changed(278, 3), "1 of 3 strips"),
-                               (tiff.changed(279, 12), "strip 0 has 12 instead of 972 bytes"),
-                               (tiff.changed(284, 2), "planes"),
-                               (tiff.data[:-4] + struct.pack("<f", np.inf), "not finite")):  # fmt: skip
-            pathlib.Path("image.tif").write_bytes(content)
-            self.check_refused(1, {"remesh image.tif out.ply": cause})
 
     def test_harmonics_of_a_sphere_are_its_center_and_its_radius(self):
         write_xyz("sphere.xyz", ellipsoid(1000, (3, 3, 3), CENTER))
@@ -175,7 +121,7 @@ class RemeshTool(ToolTest):
             "input_points": 500, "vertices": 500, "mesh_triangles": 996, "mesh_self_intersections": 0,
             "points": 1002, "triangles": 2000, "components": 1, "genus": 0, "self_intersections": 0,
             "closed": True, "manifold": True, "oriented": True, "harmonics": None,
-            "grid": {"kind": "icosahedral", "frequency": 10, "side": None},
+            "grid": {"kind": "icosahedral", "frequency": 10},
             "untangling": {"self_intersections_before": 0, "moved": 0},
             "options": {"points": 1000, "fit": "smooth", "area_weight": 0.5, "map_sweeps": 40, "degree": None},
         })  # fmt: skip

@@ -9,7 +9,7 @@ import unittest
 
 import numpy as np
 from matplotlib import image as images
-from tool_test import Mesh, ToolTest, check_surface, ellipsoid, lengths, report_of, run, single, torus, write_ply
+from tool_test import Mesh, ToolTest, check_surface, ellipsoid, lengths, report_of, run, single, write_ply
 
 
 def decode(png):
@@ -196,17 +196,6 @@ class TextureTool(ToolTest):
             asked = report_of("texture", name, "asked.glb", "-size", 64, "-checker", 8)
             self.assertTrue(pathlib.Path("asked.glb").read_bytes() == pathlib.Path("plain.glb").read_bytes(), name)
             self.assertEqual(asked["findings"], [])
-
-    def test_a_surface_with_handles_is_cut_in_the_image_alone(self):
-        points = torus(40, 20, 0.7, 0.3)
-        write_ply("torus.ply", points, colors=colors_of(points))
-        report = report_of("texture", "torus.ply", "out.obj", "-size", 512)
-        self.check_entries(report, {"vertices": 800, "mesh_triangles": 1600, "cut_handles": 1, "texture": "colors",
-                                    "embedding_distortion": None, "findings": []})  # fmt: skip
-        mesh, _ = parse_obj("out.obj")
-        self.assertEqual(check_surface(mesh.triangles, len(mesh.points)), (0, 0))  # genus 1
-        self.assertTrue(np.array_equal(mesh.points[:800], points))
-        self.assertLessEqual(mesh.worst_color(decode(pathlib.Path("out.png").read_bytes())), 10)
 
     def test_files_mention_each_other_by_paths_from_where_they_are(self):
         os.mkdir("folder")

@@ -86,7 +86,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   cloud.stages.insert(cloud.stages.end(), cloud.result.stages.begin(), cloud.result.stages.end());
 }
 
-void requireMap(const std::string& name, const Surface& surface, bool cuts_handles) {
+void requireMap(const std::string& name, const Surface& surface) {
   const std::string problem = name + " has no map to one sphere: ";
   if (surface.has_certain_triangles_only) {
     throw Failure(problem + "it is a tangle", "give -topology sphere, which maps it as it is");
@@ -95,7 +95,7 @@ void requireMap(const std::string& name, const Surface& surface, bool cuts_handl
     throw Failure(problem + "its mesh is in " + counted(surface.topology.components, "piece"),
                   "give -topology sphere, which joins them");
   }
-  if (surface.genus() > 0 && !cuts_handles) {
+  if (surface.genus() > 0) {
     throw Failure(problem + "its mesh has " + counted(surface.genus(), "handle"),
                   "give -handles none, which cuts them");
   }
@@ -110,7 +110,7 @@ void requireSpheres(const std::string& path, const CloudReconstruction& cloud, b
     }
     if (surfaces[i].sphere.cols() == 0) {
       const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
-      requireMap(part + inQuotes(path), surfaces[i], false);
+      requireMap(part + inQuotes(path), surfaces[i]);
     }
   }
 }

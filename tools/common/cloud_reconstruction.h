@@ -29,9 +29,8 @@ struct CloudReconstruction {
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud);
 
-/// \throw Failure if a mesh has no map to one sphere: it is in pieces, or has handles that are not
-/// cut.
-void requireMap(const std::string& name, const Surface& surface, bool cuts_handles);
+/// \throw Failure if a mesh has no map to one sphere: it is in pieces, or has handles.
+void requireMap(const std::string& name, const Surface& surface);
 
 /// \throw Failure if a surface of the file, or the largest one, has no embedding.
 void requireSpheres(const std::string& path, const CloudReconstruction& cloud, bool of_all);

@@ -117,7 +117,7 @@ std::string extensionsFor(FileUse use) {
   return text;
 }
 
-FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others) {
+FileFormat requireFormat(const std::string& path, FileUse use) {
   FileFormat format = formatOf(path);
   if (use == FileUse::ReadCloud &&
       (format == nullptr || !isUsable(*format, use) || format->read_cloud == readText)) {
@@ -137,7 +137,7 @@ FileFormat requireFormat(const std::string& path, FileUse use, const std::string
                        (use == FileUse::ReadCloud    ? "points are read from"
                         : use == FileUse::WriteCloud ? "points are written to"
                                                      : "meshes are written to"),
-                   "use one of " + extensionsFor(use) + others);
+                   "use one of " + extensionsFor(use));
 }
 
 }  // namespace spherical_param::tools

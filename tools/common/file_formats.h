@@ -24,8 +24,7 @@ std::string extensionOf(const std::string& path);
 /// The format of a file, by its extension. If points are read from text, or from a file with an
 /// unknown extension, the content decides.
 ///
-/// \param others further extensions that the tool takes, e.g. " .tif".
 /// \throw UsageError if the extension is unknown or its format cannot be used that way.
-FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others = "");
+FileFormat requireFormat(const std::string& path, FileUse use);
 
 }  // namespace spherical_param::tools

@@ -23,27 +23,23 @@ void addToJson(const MapDistortion& distortion, Json& json) {
   json["stretch_efficiency"] = distortion.stretch_efficiency;
 }
 
-/// \param vertex_of of each vertex of the cut mesh.
-std::vector<Color> vertexColors(const CloudReconstruction& cloud,
-                                const std::vector<Index>& vertex_of) {
+std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
   std::vector<Color> colors;
   if (cloud.data->colors.empty()) {
     return colors;
   }
-  colors.reserve(vertex_of.size());
-  for (const Index v : vertex_of) {
-    const Index point = cloud.surface().input_of_vertex[static_cast<std::size_t>(v)];
+  for (const Index point : cloud.surface().input_of_vertex) {
     colors.push_back(cloud.data->colors[static_cast<std::size_t>(point)]);
   }
   return colors;
 }
 
-/// Leaves them no option that the tool would refuse.
-void fitFindings(const ProductSettings& settings, std::vector<Finding>& findings) {
+/// Removes options that the tool would refuse from the advice.
+void fitFindings(std::vector<Finding>& findings) {
   for (Finding& finding : findings) {
     if (finding.option == "parts") {
       finding.value = "largest";
-    } else if (finding.option == "handles" && settings.handles == HandlesOnSphere::Refused) {
+    } else if (finding.option == "handles") {
       finding.option.clear();
       finding.value.clear();
     }
@@ -52,12 +48,13 @@ void fitFindings(const ProductSettings& settings, std::vector<Finding>& findings
 
 }  // namespace
 
-ProductSettings::ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map)
-    : handles(on_sphere), map(std::move(of_map)) {
+ProductSettings::ProductSettings(TopologyMode topology, SphereMapOptions of_map)
+    : map(std::move(of_map)) {
   // The embedding turns the map, and the report has its distortion.
   reconstruction.options.details = true;
-  if (handles == HandlesOnSphere::Refused) {
-    reconstruction.options.topology = TopologyMode::Sphere;
+  reconstruction.options.topology = topology;
+  if (topology == TopologyMode::Sphere) {
+    reconstruction.options.handles = HandleMode::None;
   }
 }
 
@@ -77,9 +74,6 @@ void parseProductOptions(const CommandLine& command_line, ProductSettings& setti
   if (options.topology == TopologyMode::Scan && options.parts == PartsMode::AsTopology) {
     options.parts = PartsMode::Largest;
   }
-  if (settings.handles == HandlesOnSphere::Refused && options.handles == HandleMode::AsTopology) {
-    options.handles = HandleMode::None;
-  }
   if (options.parts == PartsMode::Each) {
     throw UsageError("option -parts: this tool makes one surface",
                      "give -parts largest, or write each part to its own file first");
@@ -94,17 +88,15 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
               MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
   const Surface& surface = mapped.cloud.surface();
-  requireMap(inQuotes(path), surface, settings.handles == HandlesOnSphere::Cut);
-  fitFindings(settings, mapped.cloud.result.findings);
+  requireMap(inQuotes(path), surface);
+  fitFindings(mapped.cloud.result.findings);
   console.begin("map");
   SphereMapOptions options = settings.map;
   options.progress = console.progress();
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
-    mapped.mesh = cutHandles(surface.points, surface.triangles);
-    mapped.map =
-        computeSphereMap(mapped.mesh.points, mapped.mesh.triangles, surface.sphere, options);
+    mapped.map = computeSphereMap(surface.points, surface.triangles, surface.sphere, options);
   });
-  mapped.colors = vertexColors(mapped.cloud, mapped.mesh.vertex_of);
+  mapped.colors = vertexColors(mapped.cloud);
   mapped.cloud.stages.push_back(console.end());
 }
 
@@ -112,10 +104,7 @@ const Names<SurfaceFit> fit_names = {{"linear", SurfaceFit::Linear},
                                      {"smooth", SurfaceFit::Smooth}};
 
 SphereSurface surfaceOf(const MappedCloud& mapped, SurfaceFit fit, int threads) {
-  return {mapped.mesh.points,
-          mapped.mesh.triangles,
-          mapped.map.sphere,
-          {fit, threads, mapped.map.caps}};
+  return {mapped.points(), mapped.triangles(), mapped.map.sphere, {fit, threads, mapped.map.caps}};
 }
 
 Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLocation>& places,
@@ -125,7 +114,7 @@ Eigen::Matrix4Xd colorsAt(const MappedCloud& mapped, const std::vector<SphereLoc
     const SphereLocation& place = places[static_cast<std::size_t>(i)];
     colors.col(i).setConstant(start);
     for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      const Index vertex = mapped.mesh.triangles(corner, place.triangle);
+      const Index vertex = mapped.triangles()(corner, place.triangle);
       const Color& color = mapped.colors[static_cast<std::size_t>(vertex)];
       colors.col(i) +=
           place.weights[corner] * Eigen::Vector4d(color[0], color[1], color[2], color[3]);
@@ -146,13 +135,21 @@ std::vector<Color> truncated(const Eigen::Matrix4Xd& colors) {
 void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["input_points"] = mapped.cloud.data->points.size();
   json["vertices"] = mapped.cloud.surface().input_of_vertex.size();
-  json["mesh_triangles"] = mapped.mesh.triangles.cols();
+  json["mesh_triangles"] = mapped.triangles().cols();
   json["mesh_self_intersections"] = mapped.cloud.surface().self_intersections.size();
   addToJson(mapped.map.distortion, json);
   json["embedding_distortion"] = nullptr;
   if (mapped.cloud.surface().sphere.cols() > 0) {
     addToJson(mapped.map.before, json["embedding_distortion"]);
   }
+}
+
+void addToJson(const MeshTopology& topology, Json& json) {
+  json["closed"] = topology.closed;
+  json["manifold"] = topology.manifold();
+  json["oriented"] = topology.oriented;
+  json["components"] = topology.components;
+  json["genus"] = topology.genus ? Json(*topology.genus) : Json(nullptr);
 }
 
 }  // namespace spherical_param::tools

@@ -6,24 +6,21 @@
 #include "common/json_report.h"
 #include "common/point_data.h"
 #include "common/reconstruction_options.h"
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/mesh_topology.h"
 
 #include <string>
 #include <vector>
 
 namespace spherical_param::tools {
 
-/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
-enum class HandlesOnSphere { Cut, Refused };
-
 /// What the tools that use the map to the sphere have in common: how they come to it.
 struct ProductSettings {
-  /// One sphere if handles are refused.
-  explicit ProductSettings(HandlesOnSphere on_sphere, SphereMapOptions of_map = {});
+  /// \param topology of the mesh by default. With TopologyMode::Sphere handles are none by default,
+  ///                 so that a mesh of -topology scan has a map as well.
+  explicit ProductSettings(TopologyMode topology, SphereMapOptions of_map = {});
 
-  HandlesOnSphere handles;
   SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
   ReconstructionSettings reconstruction;
 };
@@ -37,9 +34,11 @@ void parseProductOptions(const CommandLine& command_line, ProductSettings& setti
 /// A cloud, its mesh, and the map of that to the sphere.
 struct MappedCloud {
   CloudReconstruction cloud;  ///< with the stage "map" as the last, and options that the tool takes
-  CutMesh mesh;               ///< its points are moved, if that was asked for
-  std::vector<Color> colors;  ///< of its vertices, or none if the cloud has no colours
-  SphereMap map;              ///< of `mesh`
+  std::vector<Color> colors;  ///< of the vertices of the mesh, or none if the cloud has no colours
+  SphereMap map;              ///< of the mesh
+
+  const Positions& points() const { return cloud.surface().points; }
+  const Triangles& triangles() const { return cloud.surface().triangles; }
 };
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
@@ -63,5 +62,7 @@ std::vector<Color> truncated(const Eigen::Matrix4Xd& colors);
 /// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the
 /// embedding as `embedding_distortion`, null without one.
 void addMapToJson(const MappedCloud& mapped, Json& json);
+/// Adds `closed`, `manifold`, `oriented`, `components` and `genus`.
+void addToJson(const MeshTopology& topology, Json& json);
 
 }  // namespace spherical_param::tools

@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include <png.h>
-
 #include <cstdint>
 
 namespace spherical_param::tools {
@@ -45,24 +43,6 @@ TriangleMesh repeatedOnCuts(const TextureAtlas& atlas, const PointData& vertices
     }
   }
   return mesh;
-}
-
-std::string encodePng(const TextureImage& image) {
-  png_image header = {};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = static_cast<png_uint_32>(image.width);
-  header.height = static_cast<png_uint_32>(image.height);
-  header.format = PNG_FORMAT_RGB;
-  constexpr int converted = 0;   // the pixels are of 8 bits
-  constexpr int row_stride = 0;  // rows follow each other
-  std::string png(PNG_IMAGE_PNG_SIZE_MAX(header), '\0');
-  png_alloc_size_t size = png.size();
-  if (png_image_write_to_memory(&header, png.data(), &size, converted, image.pixels.data(),
-                                row_stride, nullptr) == 0) {
-    throw Failure("the image cannot be encoded as PNG", "give -size a smaller number");
-  }
-  png.resize(size);
-  return png;
 }
 
 void writeTexturedObj(OutputFile& file, const TextureAtlas& atlas, const PointData& vertices,

@@ -21,9 +21,6 @@ PointData verticesOf(const TextureAtlas& atlas, const Positions& points,
 /// the scalars s and t.
 TriangleMesh repeatedOnCuts(const TextureAtlas& atlas, const PointData& vertices);
 
-/// The image as the content of a PNG file. \throw Failure if it does not fit into memory.
-std::string encodePng(const TextureImage& image);
-
 /// Writes OBJ, with indices of their own for coordinates: it is closed as it is. \throw Failure
 ///
 /// pcl::io::saveOBJFile() is not used for the reasons given at writeMesh().

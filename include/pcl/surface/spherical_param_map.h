@@ -3,7 +3,6 @@
 #include <pcl/surface/impl/spherical_param_run_core.hpp>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
-#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
 
 #include <utility>
@@ -32,20 +31,19 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
 
 namespace detail {
 
-/** \brief A mesh with its map to the sphere; one with handles is cut. */
-struct MappedMesh : spherical_param::CutMesh {
+/** \brief A mesh with its map to the sphere. */
+struct MappedMesh {
+  spherical_param::Positions points;
+  spherical_param::Triangles triangles;
   spherical_param::SphereMap map;
 };
 
-/** \brief What becomes of a mesh with handles, which has no map to one sphere. */
-enum class HandlesOnSphere { Cut, Refused };
-
 /** \brief Throws InvalidInput for a mesh without a map to one sphere. */
-PCL_EXPORTS void requireMap(const spherical_param::Surface& surface, HandlesOnSphere handles);
+PCL_EXPORTS void requireMap(const spherical_param::Surface& surface);
 
 /** \brief Meshes a cloud and maps the mesh. \return false after a failure */
 template <typename PointInT>
-bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSphere handles,
+bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction,
              const spherical_param::SphereMapOptions& options, MappedMesh& mesh) {
   mesh = {};
   reconstruction.reconstruct();
@@ -56,11 +54,10 @@ bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSp
     spherical_param::SphereMapOptions guarded = options;
     static_cast<spherical_param::Execution&>(guarded) = execution;
     const spherical_param::Surface& result = reconstruction.getResult().surface();
-    requireMap(result, handles);
-    MappedMesh made{spherical_param::cutHandles(result.points, result.triangles), {}};
-    made.map =
-        spherical_param::computeSphereMap(made.points, made.triangles, result.sphere, guarded);
-    mesh = std::move(made);
+    requireMap(result);
+    spherical_param::SphereMap map =
+        spherical_param::computeSphereMap(result.points, result.triangles, result.sphere, guarded);
+    mesh = {result.points, result.triangles, std::move(map)};
   };
   return runCore("computeSphericalParamMap", options, reconstruction.getNumberOfThreads(), work);
 }
@@ -70,8 +67,8 @@ bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSp
  * \return false after a failure */
 template <typename PointInT, typename Output, typename Make>
 bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& reconstruction,
-                 HandlesOnSphere handles, const spherical_param::SphereMapOptions& options,
-                 int threads, Output& output, const Make& make) {
+                 const spherical_param::SphereMapOptions& options, int threads, Output& output,
+                 const Make& make) {
   output = Output();
   MappedMesh mesh;
   const auto keep_header = [&](const spherical_param::Execution&) {
@@ -84,7 +81,7 @@ bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& r
     made.cloud.header = output.header;
     output = std::move(made);
   };
-  return runCore(function, {}, 0, keep_header) && mapMesh(reconstruction, handles, options, mesh) &&
+  return runCore(function, {}, 0, keep_header) && mapMesh(reconstruction, options, mesh) &&
          runCore(function, {threads, {}}, reconstruction.getNumberOfThreads(), work);
 }
 
@@ -95,8 +92,7 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
                               spherical_param::Positions& points, spherical_param::SphereMap& map,
                               const spherical_param::SphereMapOptions& options) {
   detail::MappedMesh mesh;
-  const bool is_done =
-      detail::mapMesh(reconstruction, detail::HandlesOnSphere::Refused, options, mesh);
+  const bool is_done = detail::mapMesh(reconstruction, options, mesh);
   points = std::move(mesh.points);
   map = std::move(mesh.map);
   return is_done;

@@ -74,7 +74,7 @@ bool mapForMorph(SphericalParamReconstruction<PointInT>& reconstruction,
       shape.vertex_of_point[static_cast<std::size_t>(used[i])] =
           reconstruction.getResult().surface().vertex_of_input[i];
   };
-  return mapMesh(reconstruction, HandlesOnSphere::Refused, options, shape.mesh) &&
+  return mapMesh(reconstruction, options, shape.mesh) &&
          runCore("morphSphericalParam", {}, 0, work);
 }
 

@@ -52,9 +52,9 @@ PCL_EXPORTS pcl::PolygonMesh remesh(const MappedMesh& mesh,
 template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
                           pcl::PolygonMesh& output, const SphericalParamRemeshOptions& options) {
-  return detail::makeFromMap("remeshSphericalParam", reconstruction,
-                             detail::HandlesOnSphere::Refused, options.map, options.map.threads,
-                             output, [&](const detail::MappedMesh& mesh, int threads) {
+  return detail::makeFromMap("remeshSphericalParam", reconstruction, options.map,
+                             options.map.threads, output,
+                             [&](const detail::MappedMesh& mesh, int threads) {
                                return detail::remesh(mesh, options, threads);
                              });
 }

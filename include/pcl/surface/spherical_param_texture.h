@@ -28,7 +28,7 @@ struct SphericalParamTextureOptions {
 };
 
 /** \brief Mesh a cloud, and give the mesh a texture: the colours of the points, or a checkerboard
- * if their type has none. A mesh with handles is cut in the image, not in space.
+ * if their type has none. A mesh with handles is a failure: setHandles(HandleMode::None) cuts them.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there
@@ -51,7 +51,7 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
 namespace detail {
 
 /** \brief A mesh that is mapped to the sphere, with a texture and without a header. The colours are
- * 3 x v, of the mesh before it was cut, or none: a checkerboard. */
+ * 3 x v, or none: a checkerboard. */
 PCL_EXPORTS pcl::TextureMesh textureMesh(const MappedMesh& mesh,
                                          const spherical_param::Positions& colors,
                                          const SphericalParamTextureOptions& options, int threads,
@@ -93,8 +93,8 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
                            const SphericalParamTextureOptions& options) {
   image = spherical_param::TextureImage();
   return detail::makeFromMap(
-      "textureSphericalParam", reconstruction, detail::HandlesOnSphere::Cut, options.map,
-      options.bake.threads, output, [&](const detail::MappedMesh& mesh, int threads) {
+      "textureSphericalParam", reconstruction, options.map, options.bake.threads, output,
+      [&](const detail::MappedMesh& mesh, int threads) {
         const spherical_param::Positions colors =
             options.checkerboard ? spherical_param::Positions() : detail::colorsOf(reconstruction);
         return detail::textureMesh(mesh, colors, options, threads, image);

@@ -5,7 +5,6 @@
 #include "spherical_param/types.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace spherical_param {
@@ -52,8 +51,6 @@ std::size_t gridVertices(SphereGrid grid, int frequency);
 
 /// A regular triangulation of the sphere.
 ///
-/// The octahedral one has its directions where GeometryImage has its pixels.
-///
 /// \param grid the kind of grid.
 /// \param frequency parts of each edge of the solid.
 /// \return the sphere.
@@ -85,12 +82,6 @@ SphereMapOptions mapOptionsForResampling();
 /// \return the mesh, with the triangles of the grid; of a closed surface with all of them.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
-/// Parameters of untangle().
-struct UntanglingOptions {
-  bool flips = true;  ///< flip edges where sliding is not enough; false: the triangles stay
-  int threads = 0;    ///< 0: one for each processor; [0, 1024]
-};
-
 /// Report of untangle().
 struct UntanglingReport {
   std::size_t before = 0;  ///< pairs of triangles that intersected
@@ -111,54 +102,19 @@ struct UntanglingReport {
 ///
 /// \param surface that the mesh was sampled from.
 /// \param mesh    of resampleSurface(); changed in place. The best result of sliding is kept.
-/// \param options whether to flip edges, threads
+/// \param threads 0: one for each processor; [0, 1024]
 /// \return the report.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
-UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh,
-                          const UntanglingOptions& options = {});
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
 
-/// Points spread evenly over a surface, in space.
-struct SurfacePoints {
-  Positions points;                       ///< 3 x n [unit of the input]
-  Positions normals;                      ///< 3 x n, unit vectors, outward
-  std::vector<SphereLocation> locations;  ///< n: where they are in the mesh
-};
-
-/// Spreads points evenly over a surface: random points by area, from which the most crowded are
-/// eliminated (Yuksel 2015, "Sample elimination for generating Poisson disk sample sets").
-///
-/// \param surface with its map.
-/// \param count   number of points, 1 and up, up to 2^24.
-/// \param seed    of the random points.
-/// \return the points, with their normals and places.
-/// \throw InvalidInput for another count.
-/// The same, bit by bit, for the same seed and any number of threads.
-SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
-
-/// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
-/// Hoppe 2003): side x side pixels, side = 2 f + 1, on the square of an unfolded octahedron. Pixels
-/// on the border coincide in pairs: (0, j) and (0, side - 1 - j), likewise on the other sides; the
-/// four corners coincide.
+/// A surface as a square image of positions (Gu, Gortler and Hoppe 2002), on an unfolded octahedron
+/// (Praun and Hoppe 2003). Pixels (0, j) and (0, side - 1 - j) of the border coincide, likewise on
+/// the other sides; the four corners coincide.
 struct GeometryImage {
-  int side = 0;         ///< pixels along each side; odd, 3 and up
+  int side = 0;         ///< pixels along each side: 2 f + 1 for a grid of frequency f
   Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
 };
-
-/// The direction of each pixel of a geometry image.
-///
-/// \param side pixels along each side.
-/// \return 3 x side^2, unit vectors, row by row.
-/// \throw InvalidInput for a side that is even or below 3, or above 16385.
-Positions geometryImageDirections(int side);
-
-/// The geometry image of a surface.
-///
-/// \param surface with its map.
-/// \param side    pixels along each side.
-/// \return the image.
-/// \throw InvalidInput as geometryImageDirections().
-GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
 
 /// The geometry image of a mesh with the grid of makeGridSphere() for SphereGrid::Octahedral, from
 /// resampleSurface() or untangle().
@@ -167,14 +123,6 @@ GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
 /// \return the image, whose pixels are the vertices.
 /// \throw InvalidInput for another number of vertices.
 GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
-
-/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Coinciding pixels of
-/// the border are averaged.
-///
-/// \param image of any origin.
-/// \return the mesh, with normals.
-/// \throw InvalidInput for a wrong side or number of pixels, or positions that are not finite.
-ResampledMesh meshOfGeometryImage(const GeometryImage& image);
 
 /// @}
 

@@ -88,11 +88,10 @@ class MeshExport:
     ) -> tuple[float, float, float]:
         """Write the mesh into a file: .ply, .obj, .vtk, .glb, .stl or .off, with what it has room for.
 
-        Points without triangles go to .pcd, .ply, .obj, .vtk, .xyz or .txt. Coordinates are in
-        single precision, or in double where that would move points by more than a millionth of
-        their extent; .glb and .stl, which have no double, get them less an offset then. A property
-        ``added`` of .ply files marks added vertices; .ply and .vtk have the other numbers of the
-        points of a file. Under the given name the file is whole, or not there.
+        Coordinates are in single precision, or in double where that would move points by more than
+        a millionth of their extent; .glb and .stl, which have no double, get them less an offset
+        then. A property ``added`` of .ply files marks added vertices; .ply and .vtk have the other
+        numbers of the points of a file. Under the given name the file is whole, or not there.
 
         Parameters
         ----------
@@ -147,10 +146,7 @@ class MeshExport:
         points, colors = self.vertices, self.colors
         axes: Any = pyplot.figure().add_subplot(projection="3d")
         axes.set_box_aspect(np.ptp(points, axis=0) + 1e-300)
-        if len(self.triangles):
-            surface = axes.plot_trisurf(*points.T, triangles=self.triangles, color="lightsteelblue")
-            if colors is not None:
-                surface.set_facecolor(colors[self.triangles].mean(axis=1) / 255)
-        else:
-            axes.scatter(*points.T, s=1, c=None if colors is None else colors / 255)
+        surface = axes.plot_trisurf(*points.T, triangles=self.triangles, color="lightsteelblue")
+        if colors is not None:
+            surface.set_facecolor(colors[self.triangles].mean(axis=1) / 255)
         pyplot.show()

@@ -22,7 +22,7 @@ __all__ = [
     "measure_map_distortion", "remesh", "sphere_map", "texture_coordinates",
 ]
 
-GridName = Literal["icosahedral", "octahedral", "even"]
+GridName = Literal["icosahedral", "octahedral"]
 FitName = Literal["smooth", "linear"]
 ChartName = Literal["octahedral", "equirectangular", "cube"]
 
@@ -95,14 +95,14 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
     return Distortion(**fields)
 
 
-def _start(mesh: Result, *, cuts_handles: bool = False) -> FloatArray:
+def _start(mesh: Result) -> FloatArray:
     """The embedding of a mesh that has a map to one sphere; (0, 3) without one."""
     handles = mesh.topology.genus or 0
     if mesh.has_certain_triangles_only:
         problem = 'is a tangle; give reconstruct() topology="sphere", which maps it as it is'
     elif mesh.topology.components > 1:
         problem = f'is in {mesh.topology.components} pieces; give reconstruct() topology="sphere", which joins them'
-    elif handles and not cuts_handles:
+    elif handles:
         problem = f"has {handles} handle{'s' * (handles > 1)}; give reconstruct() handles=\"none\", which cuts them"
     else:
         return np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
@@ -209,10 +209,10 @@ class Remeshed(MeshExport):
     """A surface that was sampled anew."""
 
     vertices: FloatArray  #: (w, 3) [unit of the input]
-    triangles: IndexArray  #: (2w - 4, 3), outward; (0, 3) for an even cloud
+    triangles: IndexArray  #: (2w - 4, 3), outward
     normals: FloatArray  #: (w, 3) unit vectors, outward
     directions: FloatArray  #: (w, 3) unit vectors: the map to the sphere
-    frequency: Optional[int]  #: parts of each edge of the grid's solid; None for an even cloud
+    frequency: int  #: parts of each edge of the grid's solid
     self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect
     self_intersections_before: int  #: before vertices were slid along the surface
     moved: int  #: vertices that were slid
@@ -268,11 +268,11 @@ def remesh(
     mesh: Union[Result, SphereMap, ArrayLike], triangles: Optional[ArrayLike] = None,
     sphere: Optional[ArrayLike] = None, *, grid: GridName = "icosahedral",
     points: Optional[SupportsIndex] = None, fit: FitName = "smooth", area_weight: SupportsFloat = 0.5,
-    sweeps: SupportsIndex = 40, seed: SupportsIndex = 1, threads: SupportsIndex = 0, progress: Progress = None,
+    sweeps: SupportsIndex = 40, threads: SupportsIndex = 0, progress: Progress = None,
 ) -> Remeshed:
-    """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
+    """Sample a surface anew, with regular triangles and any number of points.
 
-    A mesh is manifold, of genus 0, oriented outward, and open where the surface is. Where its
+    The mesh is manifold, of genus 0, oriented outward, and open where the surface is. Where its
     triangles would intersect, vertices slide along the surface, then edges are flipped;
     ``self_intersections`` holds the rest.
 
@@ -280,18 +280,15 @@ def remesh(
     ----------
     mesh, triangles, sphere
         As for ``sphere_map``, which is called first; a ``SphereMap`` is taken as it is.
-    grid : {"icosahedral", "octahedral", "even"}
-        The triangles of a geodesic sphere or a subdivided octahedron, or an even cloud.
-    points : int
-        Number of points; a mesh takes the nearest that its grid can have. Up to 2**28, an even
-        cloud to 2**24. Default: as many as the mesh.
+    grid : {"icosahedral", "octahedral"}
+        The triangles of a geodesic sphere or a subdivided octahedron.
+    points : int, 4 to 2**28
+        Number of points; the nearest that the grid can have is taken. Default: as many as the mesh.
     fit : {"smooth", "linear"}
         The surface between the vertices: quadrics through them, or the triangles themselves.
     area_weight : float, 0 to 1; sweeps : int, 0 to 1000
         Of the map, as for ``sphere_map``; a grid likes one with less shear. Without effect on a
         ``SphereMap``.
-    seed : int, 0 to 2**32 - 1
-        Of an even cloud.
     threads, progress
         As for ``reconstruct``; the stages are "map", "surface", "resample", "untangle" and
         "intersections".
@@ -304,9 +301,7 @@ def remesh(
     """
     arguments.choice("grid", grid, get_args(GridName))
     arguments.choice("fit", fit, get_args(FitName))
-    random_seed = arguments.integer("seed", seed, 0, 2**32 - 1)
-    least, most = (1, 2**24) if grid == "even" else (4, 2**28)
-    count = None if points is None else arguments.integer("points", points, least, most)
+    count = None if points is None else arguments.integer("points", points, 4, 2**28)
     if isinstance(mesh, SphereMap) and triangles is None and sphere is None:
         mapped = mesh
     else:
@@ -315,7 +310,7 @@ def remesh(
     with listening(progress) as listener:
         fields = _core.remesh(
             mapped._arrays, grid=grid, count=len(mapped.vertices) if count is None else count, fit=fit,
-            seed=random_seed, threads=arguments.thread_count(threads), progress=listener,
+            threads=arguments.thread_count(threads), progress=listener,
         )
     return Remeshed(map=mapped, **fields)
 
@@ -345,8 +340,7 @@ def texture_coordinates(
     Parameters
     ----------
     mesh : SphereMap, Remeshed or Result
-        A map that is one to one, or a mesh, which is mapped as by ``sphere_map``. One with handles
-        is cut along short loops for it, which stay cuts of the chart, but not of the mesh.
+        A map that is one to one, or a mesh, for which ``sphere_map`` is called first.
     chart : {"octahedral", "equirectangular", "cube"}
         Layout, for images of 1:1, 2:1 and 3:2.
     margin : float, [0, 0.25)
@@ -355,23 +349,20 @@ def texture_coordinates(
     Raises
     ------
     InvalidInput
-        A triangle is flipped on the sphere, or an option is not as described.
+        The mesh has handles, a triangle is flipped on the sphere, or an option is not as described.
     ComputeError, MemoryError, KeyboardInterrupt
     """
     if isinstance(mesh, Result):
-        points = mesh.vertices
-        sphere = _start(mesh, cuts_handles=True)
-    elif isinstance(mesh, (SphereMap, Remeshed)):
-        points, sphere = mesh.vertices, mesh.directions
-    else:
+        mesh = sphere_map(mesh)
+    if not isinstance(mesh, (SphereMap, Remeshed)):
         raise InvalidInput(
             f"a {type(mesh).__name__} is no Result, SphereMap or Remeshed; give the mesh of "
             "reconstruct() or the map of sphere_map()"
         )
     fields = _core.texture_coordinates(
-        points if isinstance(mesh, Result) else None, mesh.triangles, sphere,
-        chart=arguments.choice("chart", chart, get_args(ChartName)), margin=arguments.real("margin", margin),
+        mesh.triangles, mesh.directions, chart=arguments.choice("chart", chart, get_args(ChartName)),
+        margin=arguments.real("margin", margin),
     )
-    vertices = np.einsum("ijk,ij->ik", points[fields["source_vertices"]], fields["source_weights"])
-    vertices[: len(points)] = points  # without rounding
+    vertices = np.einsum("ijk,ij->ik", mesh.vertices[fields["source_vertices"]], fields["source_weights"])
+    vertices[: len(mesh.vertices)] = mesh.vertices  # without rounding
     return TextureCoordinates(vertices=vertices, **fields)
