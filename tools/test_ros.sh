@@ -69,7 +69,7 @@ of_all=("$package/package.xml" lib/libpcl_spherical_param.so
   lib/cmake/pcl_spherical_param/pcl_spherical_paramConfig.cmake)
 of_ros1=(lib/pcl_spherical_param/spherical_param_node lib/libspherical_param_nodelet.so
   "$package/nodelets.xml" "$package/launch/reconstruction.launch" "$package/srv/Reconstruct.srv"
-  "$package/launch/depth_camera.launch" "$package/config/depth_camera.yaml"
+  "$package/config/depth_camera.yaml"
   "$package/config/reconstruction.rviz"
   include/pcl_spherical_param/Reconstruct.h)
 of_ros2=(share/ament_index/resource_index/packages/pcl_spherical_param)

@@ -42,12 +42,8 @@ struct Outcome {
   std::shared_ptr<const Mesh> mesh;  ///< of Status::Done
   bool has_faults = false;           ///< a finding is a fault, see spherical_param::Finding
   std::vector<std::string> warnings;
-  std::size_t parts = 0;         ///< number of meshed parts
-  std::size_t points = 0;        ///< of the cloud
-  std::size_t outliers = 0;      ///< left out
-  std::size_t other_points = 0;  ///< of parts that were not meshed, or of no part
-  std::size_t self_intersections = 0;
-  double seconds = 0.0;  ///< of the reconstruction, wall time
+  std::size_t points = 0;  ///< of the cloud
+  double seconds = 0.0;    ///< of the reconstruction, wall time
 };
 
 /// Meshes a cloud, in double precision. Throws nothing: failures are in the outcome.

@@ -14,11 +14,9 @@
 namespace spherical_param_ros {
 namespace {
 
-using spherical_param::Index;
 using spherical_param::InvalidInput;
 using spherical_param::Positions;
 using spherical_param::Result;
-using spherical_param::Surface;
 
 std::size_t sizeOf(std::uint8_t datatype) {
   switch (datatype) {
@@ -194,11 +192,6 @@ void describe(const Result& result, Outcome& outcome) {
                                                             " = " + finding.value);
   outcome.message = result.verdict;
   outcome.has_faults = !result.failures.empty() || spherical_param::hasFault(result.findings);
-  outcome.parts = result.surfaces.size();
-  outcome.outliers = result.left_out.outliers.size();
-  outcome.other_points = result.left_out.other_parts.size();
-  for (const Surface& surface : result.surfaces)
-    outcome.self_intersections += surface.self_intersections.size();
 }
 
 void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,

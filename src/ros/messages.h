@@ -4,7 +4,7 @@
 
 #include <pcl_conversions/pcl_conversions.h>
 
-/// What the nodes of ROS 1 and 2 say, in the types of either: these have the same fields.
+/// Messages of ROS 1 and 2, whose types have the same fields.
 namespace spherical_param_ros {
 
 template <typename PointCloud2>
@@ -86,41 +86,23 @@ Marker markerOf(const Mesh& mesh, const Header& header) {
   return marker;
 }
 
-/// What ROS's diagnostics say of a worker.
-class Diagnosis {
-public:
-  template <typename Wrapper>
-  void tell(const Statistics& statistics, Wrapper& status) {
-    const Outcome last = statistics.last.value_or(Outcome());
-    const std::string state = statistics.is_working ? "working" : "idle";
-    if (statistics.failed > failed_before_)
-      status.summary(Wrapper::WARN, last.status == Status::Failed
-                                        ? "the last cloud could not be meshed"
-                                        : "a cloud could not be meshed");
-    else if (last.has_faults)
-      status.summary(Wrapper::WARN, "the last mesh has faults");
-    else
-      status.summary(Wrapper::OK, state);
-    failed_before_ = statistics.failed;
-    status.add("state", state);
-    status.add("last result", std::string(statistics.last ? nameOf(last.status) : "none"));
-    status.add("last message", last.message);
-    status.add("last time [s]", last.seconds);
-    status.add("last cloud [points]", last.points);
-    status.add("last parts", last.parts);
-    status.add("last outliers [points]", last.outliers);
-    status.add("last other parts [points]", last.other_points);
-    status.add("last self-intersections", last.self_intersections);
-    status.add("received clouds", statistics.received);
-    status.add("done clouds", statistics.done);
-    status.add("failed clouds", statistics.failed);
-    status.add("dropped clouds", statistics.dropped);
-    status.add("cancelled clouds", statistics.cancelled);
-    status.add("waiting clouds", statistics.queued);
-  }
-
-private:
-  std::uint64_t failed_before_ = 0;  ///< clouds that had failed when this was last said
-};
+/// Writes the state of a worker into a status of ROS's diagnostics.
+template <typename Wrapper>
+void diagnose(const WorkerState& worker, Wrapper& status) {
+  const std::string state = worker.is_working ? "working" : "idle";
+  const Outcome last = worker.last.value_or(Outcome());
+  if (worker.last && last.status == Status::Failed)
+    status.summary(Wrapper::WARN, "the last cloud could not be meshed");
+  else if (last.has_faults)
+    status.summary(Wrapper::WARN, "the last mesh has faults");
+  else
+    status.summary(Wrapper::OK, state);
+  status.add("state", state);
+  status.add("waiting clouds", worker.waiting);
+  status.add("last result", std::string(worker.last ? nameOf(last.status) : "none"));
+  status.add("last message", last.message);
+  status.add("last time [s]", last.seconds);
+  status.add("last cloud [points]", last.points);
+}
 
 }  // namespace spherical_param_ros

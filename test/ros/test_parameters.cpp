@@ -20,16 +20,20 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
   const auto& rows = spherical_param::optionTable();
   ASSERT_EQ(parameters().size(), rows.size() + 4);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const ParameterInfo& info = parameters()[i];
-    EXPECT_EQ(info.name, rows[i].name);
+    const Parameter& parameter = parameters()[i];
+    EXPECT_EQ(parameter.name, rows[i].name);
     // A parameter has one type: numbers beside names are texts, and any text may be given.
     const bool is_mixed = rows[i].is_point || (rows[i].is_number && !rows[i].choices.empty());
-    EXPECT_EQ(info.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
-    EXPECT_EQ(info.min, is_mixed ? 0.0 : rows[i].optional ? kUnset : rows[i].min) << info.name;
-    EXPECT_EQ(info.max, is_mixed ? 0.0 : rows[i].max) << info.name;
-    EXPECT_NE(info.description.find(rangeOf(rows[i])), std::string::npos) << info.description;
+    EXPECT_EQ(parameter.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
+    EXPECT_EQ(parameter.min, is_mixed           ? 0.0
+                             : rows[i].optional ? kUnset
+                                                : rows[i].min)
+        << parameter.name;
+    EXPECT_EQ(parameter.max, is_mixed ? 0.0 : rows[i].max) << parameter.name;
+    EXPECT_NE(parameter.description.find(rangeOf(rows[i])), std::string::npos)
+        << parameter.description;
     // No value in its range means that it is not set.
-    EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << info.name;
+    EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << parameter.name;
   }
 }
 
@@ -42,10 +46,10 @@ TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
   for (const auto& [name, value] : own)
     EXPECT_EQ(parameterOf({}, name), value) << name;
   Settings settings;
-  for (const ParameterInfo& info : parameters()) {
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
-    setParameter(settings, info.name, info.default_value);
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
+  for (const Parameter& parameter : parameters()) {
+    EXPECT_EQ(parameterOf(settings, parameter.name), parameter.default_value) << parameter.name;
+    setParameter(settings, parameter.name, parameter.default_value);
+    EXPECT_EQ(parameterOf(settings, parameter.name), parameter.default_value) << parameter.name;
   }
 }
 
@@ -68,9 +72,10 @@ TEST(RosParameters, EachChangesWhatItNamesOnly) {
   for (const auto& [name, value] : values) {
     Settings settings;
     setParameter(settings, name, value);
-    for (const ParameterInfo& info : parameters())
-      EXPECT_EQ(parameterOf(settings, info.name), info.name == name ? value : info.default_value)
-          << name << ", " << info.name;
+    for (const Parameter& parameter : parameters())
+      EXPECT_EQ(parameterOf(settings, parameter.name),
+                parameter.name == name ? value : parameter.default_value)
+          << name << ", " << parameter.name;
   }
 }
 

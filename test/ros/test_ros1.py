@@ -157,11 +157,6 @@ class Watch:
     def wait_until(self, expected):
         wait_for(lambda: expected.items() <= self.diagnosis().items(), expected)
 
-    def idle(self, received):
-        """Waits until so many clouds arrived and nothing is left to do; the counts of all."""
-        self.wait_until({"received clouds": str(received), "waiting clouds": "0", "state": "idle"})
-        return {key[:-7]: int(value) for key, value in self.diagnosis().items() if key.endswith(" clouds")}
-
 
 class Ros1(unittest.TestCase):
     def setUp(self):
@@ -184,15 +179,17 @@ class Ros1(unittest.TestCase):
         return rospy.ServiceProxy(f"{name}/reconstruct", Reconstruct, persistent=True)
 
     def call_service(self, callers, watch):
-        """Calls it from so many threads, once the first works."""
+        """Calls it from so many threads, once the first works. Returns the list that gets the answers."""
+        answers = []
 
         def call(reconstruct):
             with contextlib.suppress(rospy.ServiceException):  # the node ended
-                reconstruct(message_of(bumpy(3000)))
+                answers.append(reconstruct(message_of(bumpy(3000))))
 
         for _ in range(callers):
             threading.Thread(target=call, args=(self.service(),), daemon=True).start()
             watch.wait_until({"state": "working"})
+        return answers
 
     def run_example(self, example, **options):
         return start("bash", "-eo", "pipefail", "-c", example, **options)
@@ -237,11 +234,9 @@ class Ros1(unittest.TestCase):
             cloud = message_of(points, number)
             publisher.publish(message_of(bumpy(3)) if number == 7 else cloud)
             time.sleep(0.01)
-        counts = watch.idle(40)
-        self.assertGreater(counts["dropped"] + counts["cancelled"], 0)
-        self.assertEqual(counts["received"], sum(counts[how] for how in ("done", "failed", "dropped", "cancelled")))
-        wait_for(lambda: len(watch.all["mesh"]) == counts["done"], "all meshes")
+        wait_for(lambda: watch.one("mesh").header.stamp == cloud.header.stamp, "the last mesh")
         stamps = [mesh.header.stamp for mesh in watch.all["mesh"]]
+        self.assertLess(len(stamps), 39)  # one cannot be meshed, and others come too fast
         self.assertEqual(stamps, sorted(stamps))
         assert_mesh(self, watch.one("mesh"), cloud, points)
 
@@ -301,17 +296,15 @@ class Ros1(unittest.TestCase):
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         self.run_node("_topology:=sphere")
         watch, reconstruct, good = Watch(self), self.service(), bumpy(2000)
-        for number, (cloud, level, summary, result) in enumerate((
+        for cloud, level, summary, result in (
                 (message_of(good), 0, "idle", "done"),
                 (message_of(good[good["z"] < 0.2]), 1, "the last mesh has faults", "done"),
-                (message_of(bumpy(3)), 1, "could not be meshed", "failed")), 1):
+                (message_of(bumpy(3)), 1, "the last cloud could not be meshed", "failed")):
             answer = reconstruct(cloud)
-            counts, found = watch.idle(number), watch.diagnosis()
-            self.assertEqual([found[key] for key in ("level", "last result", "last message", "last cloud [points]")],
-                             [level, result, answer.message, str(cloud.width)])
-            self.assertIn(summary, found["summary"])
-            self.assertGreater(float(found["last time [s]"]), 0.0)
-        self.assertEqual((counts["done"], counts["failed"], counts["dropped"]), (2, 1, 0))
+            watch.wait_until({"level": level, "summary": summary, "state": "idle", "waiting clouds": "0",
+                              "last result": result, "last message": answer.message,
+                              "last cloud [points]": str(cloud.width)})
+            self.assertGreater(float(watch.diagnosis()["last time [s]"]), 0.0)
 
     def test_launch_file_starts_node_and_nodelet_with_parameters(self):
         parameters = {"surface": "open", "queue_depth": 4}
@@ -365,8 +358,8 @@ class Ros1(unittest.TestCase):
         self.assertEqual(watch.one("marker").header.frame_id, mesh.header.frame_id)
         wait_for(lambda: watch.diagnosis().get("last result") == "done", "diagnostics")
         found = watch.diagnosis()
-        self.assertEqual((found["level"], found["last parts"]), (0, "1"), found)
-        self.assertGreater(int(found["last other parts [points]"]), 50)  # the smaller object
+        self.assertEqual(found["level"], 0, found)
+        self.assertRegex(found["last message"], r"\d+ points in other parts")  # the smaller object
 
         screen = start("Xvfb", "-displayfd", "1", "-screen", "0", "800x600x24", stdout=subprocess.PIPE, text=True)
         self.run_example(RVIZ, env=dict(os.environ, DISPLAY=":" + screen.stdout.readline().strip()))
@@ -383,7 +376,8 @@ class Ros1(unittest.TestCase):
 
     def test_parameters_of_the_depth_camera_arrive_and_are_those_of_the_page(self):
         def parameters(*words):
-            command = ["roslaunch", "--dump-params", "pcl_spherical_param", "depth_camera.launch", *words]
+            command = ["roslaunch", "--dump-params", "pcl_spherical_param", "reconstruction.launch",
+                       "camera:=true", *words]
             return yaml.safe_load(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
         text = (ROOT / "src/ros/ros1/config/depth_camera.yaml").read_text()
@@ -407,10 +401,13 @@ class Ros1(unittest.TestCase):
                 process, watch = run(*ENDLESS), Watch(self)
                 if callers == 0:
                     self.publisher().publish(message_of(bumpy(3000)))
-                self.call_service(callers, watch)
+                answers = self.call_service(callers, watch)
                 watch.wait_until({"state": "working"})
                 if callers == 20:  # one is worked on, and eight wait
-                    watch.wait_until({"refused requests": "11", "waiting clouds": "8"})
+                    watch.wait_until({"waiting clouds": "8"})
+                    wait_for(lambda: len(answers) == 11, "refusals")
+                    self.assertEqual({answer.message for answer in answers},
+                                     {"too many requests wait; ask again later"})
                 process.send_signal(signal.SIGINT)
                 self.assertEqual(process.wait(TIMEOUT), 0)
 

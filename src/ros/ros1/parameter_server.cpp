@@ -50,12 +50,12 @@ void forEach(const Config& config, const Use& use) {
 }
 
 /// A limit of a parameter, in its type.
-Value limitOf(const ParameterInfo& info, double limit, bool is_max) {
-  if (std::holds_alternative<bool>(info.default_value))
+Value limitOf(const Parameter& parameter, double limit, bool is_max) {
+  if (std::holds_alternative<bool>(parameter.default_value))
     return is_max;
-  if (std::holds_alternative<std::int64_t>(info.default_value))
+  if (std::holds_alternative<std::int64_t>(parameter.default_value))
     return static_cast<std::int64_t>(limit);
-  if (std::holds_alternative<double>(info.default_value))
+  if (std::holds_alternative<double>(parameter.default_value))
     return limit;
   return std::string();
 }
@@ -66,9 +66,9 @@ const char* typeOf(const Value& value) {
 }
 
 /// The choices of a parameter as rqt_reconfigure reads them; empty if it has none.
-std::string editMethodOf(const ParameterInfo& info) {
+std::string editMethodOf(const Parameter& parameter) {
   std::string list;
-  for (const std::string& choice : info.choices)
+  for (const std::string& choice : parameter.choices)
     list += (list.empty() ? "" : ", ") + ("{'name': '" + choice + "', 'value': '" + choice) +
             "', 'type': 'str', 'description': ''}";
   return list.empty() ? "" : "{'enum_description': 'names', 'enum': [" + list + "]}";
@@ -78,24 +78,24 @@ dynamic_reconfigure::ConfigDescription description() {
   dynamic_reconfigure::ConfigDescription all;
   all.groups.resize(1);
   all.groups[0].name = "Default";
-  for (const ParameterInfo& info : parameters()) {
+  for (const Parameter& parameter : parameters()) {
     dynamic_reconfigure::ParamDescription one;
-    one.name = info.name;
-    one.type = typeOf(info.default_value);
-    one.description = info.description;
-    one.edit_method = editMethodOf(info);
+    one.name = parameter.name;
+    one.type = typeOf(parameter.default_value);
+    one.description = parameter.description;
+    one.edit_method = editMethodOf(parameter);
     all.groups[0].parameters.push_back(one);
-    append(all.dflt, info.name, info.default_value);
-    append(all.min, info.name, limitOf(info, info.min, false));
-    append(all.max, info.name, limitOf(info, info.max, true));
+    append(all.dflt, parameter.name, parameter.default_value);
+    append(all.min, parameter.name, limitOf(parameter, parameter.min, false));
+    append(all.max, parameter.name, limitOf(parameter, parameter.max, true));
   }
   return all;
 }
 
 Config configOf(const Settings& settings) {
   Config config;
-  for (const ParameterInfo& info : parameters())
-    append(config, info.name, parameterOf(settings, info.name));
+  for (const Parameter& parameter : parameters())
+    append(config, parameter.name, parameterOf(settings, parameter.name));
   config.groups.resize(1);
   config.groups[0].name = "Default";
   config.groups[0].state = 1;
@@ -106,26 +106,27 @@ Config configOf(const Settings& settings) {
 
 Settings readSettings(const ros::NodeHandle& node) {
   Settings settings;
-  for (const ParameterInfo& info : parameters()) {
+  for (const Parameter& parameter : parameters()) {
     XmlRpc::XmlRpcValue value;
-    if (!node.getParam(info.name, value))
+    if (!node.getParam(parameter.name, value))
       continue;
     switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
-      setParameter(settings, info.name, static_cast<bool>(value));
+      setParameter(settings, parameter.name, static_cast<bool>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeInt:
-      setParameter(settings, info.name, std::int64_t{static_cast<int>(value)});
+      setParameter(settings, parameter.name, std::int64_t{static_cast<int>(value)});
       break;
     case XmlRpc::XmlRpcValue::TypeDouble:
-      setParameter(settings, info.name, static_cast<double>(value));
+      setParameter(settings, parameter.name, static_cast<double>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeString:
-      setParameter(settings, info.name, static_cast<std::string>(value));
+      setParameter(settings, parameter.name, static_cast<std::string>(value));
       break;
     default:
-      throw spherical_param::InvalidInput(info.name + " is a list or a structure; use a value " +
-                                          "such as " + textOf(info.default_value));
+      throw spherical_param::InvalidInput(parameter.name +
+                                          " is a list or a structure; use a value " + "such as " +
+                                          textOf(parameter.default_value));
     }
   }
   return settings;
