@@ -116,7 +116,7 @@ mesh.write("mesh.obj")
 mesh.report("page.html")
 half = spherical_param.morph(mesh, spherical_param.reconstruct("mesh.obj")).at(0.5)
 assert len(half.triangles) >= 996
-others = {"matplotlib", "open3d", "meshio", "trimesh", "tqdm"} & set(sys.modules)
+others = {"matplotlib", "open3d", "meshio", "trimesh"} & set(sys.modules)
 assert not others, others
 ')
 }

@@ -71,7 +71,8 @@ using Loops = std::vector<std::vector<Index>>;
 
 /// Turns what belongs to a surface into objects of Python.
 struct Converter {
-  bool has_volume;
+  bool has_volume = false;
+  py::module_ classes = py::module_::import("spherical_param._figures");
 
   template <typename Struct>
   py::dict fieldsOf(const Struct& self) const {
@@ -90,7 +91,7 @@ struct Converter {
     if constexpr (std::is_pointer_v<Value>)
       return value == nullptr ? py::none() : object(*value);
     else if constexpr (isDescribed(kOf<Value>))
-      return fieldsOf(value);
+      return classes.attr(describe(kOf<Value>).name)(**fieldsOf(value));
     else if constexpr (isDescribedList(kOf<Value>) || std::is_same_v<Value, Loops>)
       return py::tuple(listOf(value, [this](const auto& item) { return object(item); }));
     else if constexpr (std::is_enum_v<Value>)
@@ -117,7 +118,6 @@ private:
 struct PythonType {
   std::string name;
   std::string shape = {};
-  std::string of_struct = {};
 };
 
 PythonType optional(PythonType type) {
@@ -149,11 +149,9 @@ struct PythonTypes {
   template <typename Value>
   static PythonType of(const Value*) {
     if constexpr (isDescribed(kOf<Value>)) {
-      const std::string name = describe(kOf<Value>).name;
-      return {name, "", name};
+      return {describe(kOf<Value>).name};
     } else if constexpr (isDescribedList(kOf<Value>)) {
-      const std::string name = describe(kOf<typename Value::value_type>).name;
-      return {"tuple[" + name + ", ...]", "", name};
+      return {"tuple[" + std::string(describe(kOf<typename Value::value_type>).name) + ", ...]"};
     } else if constexpr (std::is_enum_v<Value>) {
       std::string names;
       for (const char* name : namesOf(Value()))
@@ -196,7 +194,7 @@ void addRows(const Struct*, py::list& rows, std::set<std::string>& known) {
     if (std::is_pointer_v<Got> || field.kind == FieldKind::OfSolid)
       type = optional(type);
     fields.append(py::dict("name"_a = field.name, "type"_a = type.name,
-                           "help"_a = helpOf(field, type.shape), "struct"_a = type.of_struct));
+                           "help"_a = helpOf(field, type.shape)));
   });
   rows.append(py::dict("name"_a = about.name, "help"_a = about.help, "fields"_a = fields));
 }
@@ -248,19 +246,15 @@ py::dict toDict(const Result& result) {
   py::dict stages;
   for (const StageTime& stage : result.stages)
     stages[py::str(stage.name)] = stage.seconds;
-  py::list findings;
-  for (const Finding& finding : result.findings)
-    findings.append(Converter{false}.fieldsOf(finding));
+  const Converter converter;
   const JoinedMesh mesh = joined(result);
-  return py::dict("surfaces"_a = py::tuple(surfaces),
-                  "mesh"_a = py::dict("vertices"_a = toArray(mesh.points),
-                                      "triangles"_a = toArray(mesh.triangles),
-                                      "input_of_vertex"_a = toArray(mesh.input_of_vertex),
-                                      "is_added"_a = toArray(mesh.is_added)),
-                  "view"_a = result.view ? Converter{false}.fieldsOf(*result.view)
-                                         : py::object(py::none()),
-                  "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,
-                  "verdict"_a = result.verdict, "findings"_a = py::tuple(findings),
+  return py::dict("surfaces"_a = surfaces, "vertices"_a = toArray(mesh.points),
+                  "triangles"_a = toArray(mesh.triangles),
+                  "input_of_vertex"_a = toArray(mesh.input_of_vertex),
+                  "_is_added"_a = toArray(mesh.is_added),
+                  "view"_a = converter.object(result.view),
+                  "left_out"_a = converter.object(result.left_out), "stages"_a = stages,
+                  "verdict"_a = result.verdict, "findings"_a = converter.object(result.findings),
                   "failures"_a = py::tuple(py::cast(result.failures)));
 }
 
