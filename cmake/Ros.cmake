@@ -1,19 +1,19 @@
-# Which ROS the nodes are built for, in SPHERICAL_PARAM_ROS_VERSION: 1, 2 or none (empty).
+# Sets SPHERICAL_PARAM_ROS_VERSION to the ROS that the nodes are built for: 1, 2 or empty.
 #
-# SPHERICAL_PARAM_BUILD_ROS: AUTO asks for it only where catkin or colcon build this project as a
-# package of ROS, and does without if its packages are missing; ON is told what is missing; OFF.
+# With SPHERICAL_PARAM_BUILD_ROS=AUTO they are built where catkin or colcon build this project as a
+# package of ROS, unless packages of ROS are missing. With ON, missing packages are an error.
 set(SPHERICAL_PARAM_BUILD_ROS AUTO CACHE STRING "Build the nodes of ROS: ON, OFF or AUTO (by catkin and colcon)")
 set_property(CACHE SPHERICAL_PARAM_BUILD_ROS PROPERTY STRINGS AUTO ON OFF)
 set(SPHERICAL_PARAM_ROS_VERSION "")
-# message_generation first: its macros must be there when those of the others are found.
+# message_generation first: the other packages use its macros.
 set(ros1_packages message_generation diagnostic_updater dynamic_reconfigure geometry_msgs nodelet
                   pcl_conversions pcl_msgs pluginlib roscpp sensor_msgs shape_msgs std_msgs
                   visualization_msgs)
 set(ros2_packages diagnostic_msgs diagnostic_updater geometry_msgs pcl_conversions pcl_msgs rclcpp
                   rcl_interfaces sensor_msgs shape_msgs std_msgs visualization_msgs)
 
-# The packages among those that follow that are not there. What they set is lost with the function, and their
-# definitions as well: what is not of ROS is compiled as without it.
+# Returns the packages that are missing. The variables and definitions that a found package sets end with the function,
+# so that all but the nodes is compiled as without ROS.
 function(spherical_param_missing_packages result)
   get_directory_property(definitions COMPILE_DEFINITIONS)
   set(missing "")
@@ -27,8 +27,8 @@ function(spherical_param_missing_packages result)
   set(${result} "${missing}" PARENT_SCOPE)
 endfunction()
 
-# Not so inside another package, which has fetched the library, and is the one that ROS knows. In the
-# one build of plain catkin_make all packages are below its top project, which lists them.
+# Another package of ROS that fetches the library builds no nodes. In the workspace of catkin_make this
+# project is not the top level, but its path is listed.
 set(is_package_of_ros ${PROJECT_IS_TOP_LEVEL})
 get_filename_component(own_path ${PROJECT_SOURCE_DIR} REALPATH)
 foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)
@@ -39,8 +39,8 @@ foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)
 endforeach()
 
 if(SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO" AND is_package_of_ros)
-  # What catkin_make, catkin_make_isolated and colcon's task for catkin give. For ament, colcon gives
-  # nothing but its mark in the environment.
+  # catkin_make, catkin_make_isolated and colcon for catkin define one of these. For ament, colcon only
+  # sets a variable of the environment.
   if(DEFINED CATKIN_DEVEL_PREFIX OR DEFINED CATKIN_INSTALL_INTO_PREFIX_ROOT)
     set(SPHERICAL_PARAM_ROS_VERSION 1)
   elseif("$ENV{ROS_VERSION}" STREQUAL "2" AND DEFINED ENV{COLCON})

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/types.h"
 #include "spherical_param_ros/parameters.h"
 
 #include <pcl/PCLPointCloud2.h>
@@ -16,9 +17,10 @@ struct Mesh {
   /// Header and every field of the cloud, one record a vertex; coordinates are moved ones after
   /// consolidation or smoothing.
   pcl::PCLPointCloud2 cloud;
-  std::vector<std::array<double, 3>> vertices;  ///< [unit of the cloud]
-  /// Indices of vertices, counter-clockwise from outside, or from one side of an open surface.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  spherical_param::Positions vertices;  ///< 3 x v [unit of the cloud]
+  /// 3 x t, indices of vertices, counter-clockwise from outside, or from one side of an open
+  /// surface.
+  spherical_param::Triangles triangles;
   /// Red, green, blue, alpha (255 if the cloud has none). Empty for clouds without colours.
   std::vector<std::array<std::uint8_t, 4>> colors;
 };

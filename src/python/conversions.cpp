@@ -11,7 +11,6 @@
 #include <set>
 #include <string>
 #include <type_traits>
-#include <variant>
 
 namespace spherical_param::python {
 namespace {
@@ -43,17 +42,6 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
   }
   throw InvalidInput(row.name + " = " + py::repr(value).cast<std::string>() +
                      " cannot be used; use " + rangeOf(row));
-}
-
-py::object toObject(const OptionValue& value) {
-  return std::visit(
-      [](const auto& known) -> py::object {
-        if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
-          return py::none();
-        else
-          return py::cast(known);
-      },
-      value);
 }
 
 template <typename Items, typename Convert>
@@ -211,7 +199,7 @@ py::list optionRows() {
     rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
                          "choices"_a = row.choices, "is_number"_a = row.is_number,
                          "is_integer"_a = row.is_integer, "is_point"_a = row.is_point,
-                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
+                         "optional"_a = row.optional, "default"_a = row.get({})));
   return rows;
 }
 
@@ -251,8 +239,7 @@ py::dict toDict(const Result& result) {
   return py::dict("surfaces"_a = surfaces, "vertices"_a = toArray(mesh.points),
                   "triangles"_a = toArray(mesh.triangles),
                   "input_of_vertex"_a = toArray(mesh.input_of_vertex),
-                  "_is_added"_a = toArray(mesh.is_added),
-                  "view"_a = converter.object(result.view),
+                  "_is_added"_a = toArray(mesh.is_added), "view"_a = converter.object(result.view),
                   "left_out"_a = converter.object(result.left_out), "stages"_a = stages,
                   "verdict"_a = result.verdict, "findings"_a = converter.object(result.findings),
                   "failures"_a = py::tuple(py::cast(result.failures)));

@@ -144,7 +144,7 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
   if (field->datatype != pcl::PCLPointField::FLOAT32 &&
       field->datatype != pcl::PCLPointField::UINT32 && field->datatype != pcl::PCLPointField::INT32)
     return;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.cloud.width; ++i) {
     const std::uint8_t* bgra = recordOf(mesh.cloud, i) + field->offset;
     mesh.colors.push_back({bgra[2], bgra[1], bgra[0], has_alpha ? bgra[3] : std::uint8_t{255}});
   }
@@ -164,26 +164,22 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud, const Res
   kept.row_step = kept.width * kept.point_step;
   kept.is_dense = 1;
   kept.data.resize(vertices * kept.point_step);
-  mesh->vertices.resize(vertices);
   const Axes axes = axesOf(cloud);
   for (std::size_t v = 0; v < vertices; ++v) {
     std::uint8_t* record = kept.data.data() + v * kept.point_step;
     std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(joined.input_of_vertex[v])),
                 kept.point_step);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
       setCoordinate(record, *axes[axis],
                     joined.points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(v)));
-      mesh->vertices[v][axis] = coordinate(record, *axes[axis]);
-    }
   }
-  mesh->triangles.reserve(static_cast<std::size_t>(joined.triangles.cols()));
-  for (const auto triangle : joined.triangles.cast<std::uint32_t>().colwise())
-    mesh->triangles.push_back({triangle[0], triangle[1], triangle[2]});
+  mesh->vertices = vectorsOf(kept, axes);  // in the precision of the cloud
+  mesh->triangles = joined.triangles;
   copyColors(cloud, *mesh);
   return mesh;
 }
 
-/// What is to be said of a result.
+/// Puts verdict, warnings and faults of a result into the outcome.
 void describe(const Result& result, Outcome& outcome) {
   outcome.warnings = result.failures;
   for (const spherical_param::Finding& finding : result.findings)

@@ -4,6 +4,8 @@
 
 #include <pcl_conversions/pcl_conversions.h>
 
+#include <algorithm>
+
 /// Messages of ROS 1 and 2, whose types have the same fields.
 namespace spherical_param_ros {
 
@@ -21,14 +23,15 @@ PolygonMesh polygonMeshOf(const Mesh& mesh, const Header& header) {
   pcl_conversions::fromPCL(mesh.cloud, message.cloud);
   message.header = header;
   message.cloud.header = header;
-  message.polygons.resize(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    message.polygons[t].vertices.assign(mesh.triangles[t].begin(), mesh.triangles[t].end());
+  for (const auto triangle : mesh.triangles.colwise()) {
+    message.polygons.emplace_back();
+    message.polygons.back().vertices.assign(triangle.begin(), triangle.end());
+  }
   return message;
 }
 
 template <typename Point>
-Point pointOf(const std::array<double, 3>& vertex) {
+Point pointOf(const Eigen::Vector3d& vertex) {
   Point point;
   point.x = vertex[0];
   point.y = vertex[1];
@@ -40,13 +43,12 @@ Point pointOf(const std::array<double, 3>& vertex) {
 template <typename Shape>
 Shape shapeOf(const Mesh& mesh) {
   Shape message;
-  message.vertices.reserve(mesh.vertices.size());
-  for (const auto& vertex : mesh.vertices)
+  for (const auto vertex : mesh.vertices.colwise())
     message.vertices.push_back(pointOf<typename decltype(message.vertices)::value_type>(vertex));
-  message.triangles.resize(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      message.triangles[t].vertex_indices[corner] = mesh.triangles[t][corner];
+  for (const auto triangle : mesh.triangles.colwise()) {
+    message.triangles.emplace_back();
+    std::copy(triangle.begin(), triangle.end(), message.triangles.back().vertex_indices.begin());
+  }
   return message;
 }
 
@@ -73,16 +75,13 @@ Marker markerOf(const Mesh& mesh, const Header& header) {
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.r = marker.color.g = marker.color.b = 0.8F;
   marker.color.a = 1.0F;
-  marker.points.reserve(3 * mesh.triangles.size());
-  marker.colors.reserve(mesh.colors.empty() ? 0 : 3 * mesh.triangles.size());
   using Point = typename decltype(marker.points)::value_type;
   using Color = typename decltype(marker.colors)::value_type;
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle) {
-      marker.points.push_back(pointOf<Point>(mesh.vertices[vertex]));
-      if (!mesh.colors.empty())
-        marker.colors.push_back(colorOf<Color>(mesh.colors[vertex]));
-    }
+  for (const spherical_param::Index vertex : mesh.triangles.reshaped()) {
+    marker.points.push_back(pointOf<Point>(mesh.vertices.col(vertex)));
+    if (!mesh.colors.empty())
+      marker.colors.push_back(colorOf<Color>(mesh.colors[static_cast<std::size_t>(vertex)]));
+  }
   return marker;
 }
 

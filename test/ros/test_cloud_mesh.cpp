@@ -54,19 +54,14 @@ void expectCoresMesh(const Outcome& outcome, const pcl::PCLPointCloud2& cloud,
   const Positions vertices = core.points.cast<Scalar>().template cast<double>();
   const Mesh& mesh = *outcome.mesh;
   EXPECT_EQ(positionsOf<Scalar>(mesh.cloud), vertices);
-  ASSERT_EQ(mesh.vertices.size(), core.input_of_vertex.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    EXPECT_EQ(Eigen::Vector3d(mesh.vertices[v].data()), vertices.col(static_cast<int>(v)));
+  EXPECT_EQ(mesh.vertices, vertices);
+  EXPECT_EQ(mesh.triangles, core.triangles);
+  for (std::size_t v = 0; v < core.input_of_vertex.size(); ++v) {
     Record expected = record(cloud, static_cast<std::size_t>(core.input_of_vertex[v]));
     const Record found = record(mesh.cloud, v);
     std::copy_n(found.begin(), 3 * sizeof(Scalar), expected.begin());
     EXPECT_EQ(found, expected);
   }
-  ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(core.triangles.cols()));
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      EXPECT_EQ(static_cast<spherical_param::Index>(mesh.triangles[t][corner]),
-                core.triangles(static_cast<int>(corner), static_cast<int>(t)));
   EXPECT_EQ(outcome.message, result.verdict);
   EXPECT_EQ(outcome.has_faults, spherical_param::hasFault(result.findings));
   EXPECT_EQ(outcome.warnings.size(), result.findings.size());
@@ -168,7 +163,7 @@ TEST(RosCloudMesh, OptionsHoldAndAllSurfacesAreOneMesh) {
        {std::pair(each, false), std::pair(filled, false), std::pair(sphere, true)}) {
     const Outcome outcome = meshed(cloud, settings);
     EXPECT_EQ(outcome.has_faults, has_faults) << outcome.message;
-    EXPECT_EQ(outcome.mesh->colors.size(), outcome.mesh->vertices.size());
+    EXPECT_EQ(outcome.mesh->colors.size(), outcome.mesh->cloud.width);
     expectCoresMesh<float>(outcome, cloud, settings);
   }
 }
@@ -199,10 +194,8 @@ TEST(RosCloudMesh, SurfacesFaceTheSensorOrAsTheNormalsOfThePointsDo) {
       cloud.fields.push_back(test::field("normal_y", 16));
     }
     const Outcome outcome = meshed(cloud);
-    Eigen::Matrix3d corners;
-    for (int k = 0; k < 3; ++k)
-      corners.col(k) = Eigen::Vector3d(
-          outcome.mesh->vertices[outcome.mesh->triangles[0][static_cast<std::size_t>(k)]].data());
+    const Eigen::Matrix3d corners =
+        outcome.mesh->vertices(Eigen::all, outcome.mesh->triangles.col(0));
     EXPECT_EQ(corners.determinant() > 0.0, has_normals);
   }
 }

@@ -37,44 +37,33 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
   }
 }
 
-TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  const Values own = {{"outliers", std::string("topology")},
-                      {"max_points", std::int64_t{5000000}},
-                      {"queue_depth", std::int64_t{1}},
-                      {"cancel_running", true},
-                      {"max_cancellations", std::int64_t{3}}};
-  for (const auto& [name, value] : own)
-    EXPECT_EQ(parameterOf({}, name), value) << name;
-  Settings settings;
-  for (const Parameter& parameter : parameters()) {
-    EXPECT_EQ(parameterOf(settings, parameter.name), parameter.default_value) << parameter.name;
-    setParameter(settings, parameter.name, parameter.default_value);
-    EXPECT_EQ(parameterOf(settings, parameter.name), parameter.default_value) << parameter.name;
-  }
-}
-
-TEST(RosParameters, EachChangesWhatItNamesOnly) {
-  Values values = {{"outliers", std::string("4.25")},
-                   {"max_points", std::int64_t{1000}},
-                   {"queue_depth", std::int64_t{4}},
-                   {"cancel_running", false},
-                   {"max_cancellations", std::int64_t{9}}};
+TEST(RosParameters, DefaultsAreThoseOfThePageAndEachChangesWhatItNamesOnly) {
+  struct Case {
+    std::string name;
+    Value usual;
+    Value other;
+  };
+  std::vector<Case> cases = {{"outliers", std::string("topology"), std::string("4.25")},
+                             {"max_points", std::int64_t{5000000}, std::int64_t{1000}},
+                             {"queue_depth", std::int64_t{1}, std::int64_t{4}},
+                             {"cancel_running", true, false},
+                             {"max_cancellations", std::int64_t{3}, std::int64_t{9}}};
   for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
+    const Value usual = parameterOf({}, row.name);
+    Value other = (row.min + row.max) / 2.0;
     if (!row.choices.empty())
-      values.emplace_back(row.name, parameterOf({}, row.name) == Value(row.choices.back())
-                                        ? row.choices.front()
-                                        : row.choices.back());
+      other = usual == Value(row.choices.back()) ? row.choices.front() : row.choices.back();
     else if (row.is_integer)
-      values.emplace_back(row.name, static_cast<std::int64_t>(row.min) + 7);
-    else
-      values.emplace_back(row.name, (row.min + row.max) / 2.0);
+      other = static_cast<std::int64_t>(row.min) + 7;
+    cases.push_back({row.name, usual, other});
   }
-  for (const auto& [name, value] : values) {
+  for (const auto& [name, usual, other] : cases) {
     Settings settings;
-    setParameter(settings, name, value);
+    EXPECT_EQ(parameterOf(settings, name), usual) << name;
+    setParameter(settings, name, other);
     for (const Parameter& parameter : parameters())
       EXPECT_EQ(parameterOf(settings, parameter.name),
-                parameter.name == name ? value : parameter.default_value)
+                parameter.name == name ? other : parameter.default_value)
           << name << ", " << parameter.name;
   }
 }

@@ -1,5 +1,5 @@
-// What happens to clouds that come faster than they can be meshed. Where the order of events
-// counts, what stands for the reconstruction ends when the test says so.
+// Clouds that come faster than they can be meshed. Where the order of events matters, a stand-in
+// for the reconstruction ends when the test lets it.
 
 #include "ros_clouds.h"
 #include "spherical_param_ros/reconstruction_worker.h"
@@ -27,8 +27,8 @@ Cloud ellipsoid(std::uint32_t points) {
   return std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(points));
 }
 
-/// Stands for the reconstruction: holds each cloud until it is let through or cancelled. Notes what
-/// is begun and what becomes of clouds.
+/// A stand-in for the reconstruction that holds each cloud until it is let through or cancelled. It
+/// records which clouds were begun and how they ended.
 class Gate {
 public:
   ReconstructionWorker::Mesher mesher() {
@@ -36,7 +36,7 @@ public:
                   const std::function<bool()>& is_wanted) { return mesh(cloud, is_wanted); };
   }
 
-  /// Submits a cloud with this number. The worker must not mind what its handler throws.
+  /// Submits a cloud with this number. The exceptions of its handler must not end the worker.
   void submit(ReconstructionWorker& worker, int number) {
     worker.submit(cloudNumber(number), [this, number](const Outcome& outcome) {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -51,7 +51,7 @@ public:
     changed_.notify_all();
   }
 
-  /// Waits until so many clouds were begun, this one last.
+  /// Waits until `count` clouds were begun, cloud `number` last.
   void waitForBegin(std::size_t count, int number) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return begun_.size() >= count && begun_.back() == number; });
