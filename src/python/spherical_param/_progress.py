@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, Optional, Union
-
-import numpy as np
+from typing import Callable, Iterator, Optional, Union
 
 from ._errors import InvalidInput
 
@@ -45,23 +43,18 @@ class _Bar:
 
 @contextmanager
 def listening(progress: Progress) -> Iterator[Optional[ProgressFunction]]:
-    """What the core may call: it ends its work for False alone."""
-    if progress is None or progress is False:
-        yield None
-        return
+    """The function that the core calls."""
     if progress is True:
         bar = _Bar()
         try:
             yield bar
         finally:
             bar.close()
-        return
-    if not callable(progress):
-        raise InvalidInput(f"progress = {progress!r} cannot be called; give True or a function of (stage, fraction)")
-    listener = progress
-
-    def report(stage: str, fraction: float) -> bool:
-        answer = listener(stage, fraction)
-        return not (isinstance(answer, (bool, np.bool_)) and not answer)
-
-    yield report
+    elif progress is None or progress is False:
+        yield None
+    elif callable(progress):
+        yield progress
+    else:
+        raise InvalidInput(
+            f"progress = {progress!r} cannot be called; give True or a function of (stage, fraction)"
+        )

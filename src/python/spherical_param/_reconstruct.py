@@ -88,10 +88,9 @@ def reconstruct(
                 f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, columns, details or progress"
             )
     has_details = arguments.truth("details", details)
-    values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
         cloud = read("points", points, listener, columns)
-        fields = _core.reconstruct(cloud.points, values, info=cloud.info, details=has_details, progress=listener)
+        fields = _core.reconstruct(cloud.points, options, info=cloud.info, details=has_details, progress=listener)
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)
     results = make_results(fields, cloud, options)

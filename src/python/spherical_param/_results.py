@@ -15,7 +15,6 @@ from zlib import crc32
 
 import numpy as np
 
-from . import _arguments as arguments
 from . import _core
 from ._arguments import ByteArray, FloatArray, IndexArray
 from ._clouds import Cloud
@@ -139,12 +138,11 @@ class Result(Surface, OfCloud):
         source = self._source
         if crc32(source.cloud.points.data) != source.checksum:
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
-        threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
             _core.write_report(
-                os.fsencode(path), source.cloud.points, source.cloud.colors,
-                {**source.options, "threads": threads}, info=source.cloud.info, part=source.part,
-                input=source.cloud.name or "points", command=source.command, progress=listener,
+                os.fsencode(path), source.cloud.points, source.cloud.colors, source.options,
+                info=source.cloud.info, part=source.part, input=source.cloud.name or "points",
+                command=source.command, progress=listener,
             )
 
     def _repr_html_(self) -> Optional[str]:
