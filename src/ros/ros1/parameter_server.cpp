@@ -2,6 +2,8 @@
 
 #include "spherical_param/errors.h"
 
+#include <dynamic_reconfigure/config_tools.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -11,6 +13,7 @@ namespace spherical_param_ros {
 namespace {
 
 using dynamic_reconfigure::Config;
+using dynamic_reconfigure::ConfigTools;
 
 /// Integers of ROS 1 have 32 bits.
 int narrowed(std::int64_t value) {
@@ -18,22 +21,15 @@ int narrowed(std::int64_t value) {
                                                    std::numeric_limits<int>::max()));
 }
 
-template <typename Entries, typename EntryValue>
-void append(Entries& entries, const std::string& name, const EntryValue& value) {
-  entries.emplace_back();
-  entries.back().name = name;
-  entries.back().value = value;
-}
-
 void append(Config& config, const std::string& name, const Value& value) {
   if (const auto* truth = std::get_if<bool>(&value))
-    append(config.bools, name, static_cast<std::uint8_t>(*truth));
+    ConfigTools::appendParameter(config, name, *truth);
   else if (const auto* integer = std::get_if<std::int64_t>(&value))
-    append(config.ints, name, narrowed(*integer));
+    ConfigTools::appendParameter(config, name, narrowed(*integer));
   else if (const auto* number = std::get_if<double>(&value))
-    append(config.doubles, name, *number);
+    ConfigTools::appendParameter(config, name, *number);
   else
-    append(config.strs, name, std::get<std::string>(value));
+    ConfigTools::appendParameter(config, name, std::get<std::string>(value));
 }
 
 /// Calls for the name and the value of each entry.
