@@ -44,9 +44,8 @@ const std::vector<Parameter>& parameters();
 
 /// Changes one setting; the others stay.
 ///
-/// \throw spherical_param::InvalidInput for an unknown name, the wrong type or a value out of
-/// range:
-///        the message is "cause; remedy", and the settings are unchanged.
+/// \throw spherical_param::InvalidInput ("cause; remedy") for an unknown name, the wrong type or a
+///        value out of range. The settings are unchanged then.
 void setParameter(Settings& settings, const std::string& name, const Value& value);
 
 /// The value that setParameter() would take.

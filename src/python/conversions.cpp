@@ -18,7 +18,7 @@ namespace {
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-/// A value of an option. Whatever Python takes for an integer or a number is one.
+/// A value of an option: all that Python accepts as an integer, a number or a text.
 OptionValue toValue(const OptionRow& row, const py::handle& value) {
   if (value.is_none())
     return {};
@@ -31,7 +31,7 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
       return text(point[0]) + ',' + text(point[1]) + ',' + text(point[2]);
     }
     if (PyIndex_Check(value.ptr()) != 0) {
-      PyObject* const index = PyNumber_Index(value.ptr());  // none for an array of two numbers
+      PyObject* const index = PyNumber_Index(value.ptr());  // null for an array of two numbers
       if (index == nullptr)
         throw py::error_already_set();
       return py::reinterpret_steal<py::int_>(index).cast<std::int64_t>();

@@ -36,7 +36,7 @@ const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std:
   return nullptr;
 }
 
-/// Checks that all records are where the sizes of the message say. \throw InvalidInput
+/// Checks that the sizes and the fields of the message fit its data. \throw InvalidInput
 void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
   if (points == 0)
@@ -76,7 +76,7 @@ void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   }
 }
 
-/// Where the record of a point begins. The rows may have bytes at their ends that belong to none.
+/// The record of a point. Rows may end with padding.
 const std::uint8_t* recordOf(const pcl::PCLPointCloud2& cloud, std::size_t point) {
   const std::size_t row = point / cloud.width;
   return cloud.data.data() + row * cloud.row_step + (point - row * cloud.width) * cloud.point_step;

@@ -82,7 +82,7 @@ Parameter option(const OptionRow& row) {
         setOption(settings.options, row.name, toOption(row, value));
       }};
   if ((row.is_number || row.is_point) && isText(row)) {
-    // Any text: a number, or a point, may be among them.
+    // Any text may be given: it may be a number or a point.
     parameter.choices.clear();
     parameter.min = parameter.max = 0.0;
   }

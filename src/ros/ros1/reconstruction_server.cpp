@@ -13,8 +13,8 @@
 namespace spherical_param_ros {
 namespace {
 
-/// The shutdown of older roscpp first waits for the services that are being called: without this
-/// question the process would not end before its mesh is done.
+/// Older versions of roscpp wait for running service calls when they shut down. So the work on a
+/// cloud ends when the shutdown begins.
 Outcome meshUnlessShuttingDown(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                                const std::function<bool()>& is_wanted) {
   return meshCloud(cloud, settings, [&] { return is_wanted() && !ros::isShuttingDown(); });
@@ -58,7 +58,7 @@ ReconstructionServer::ReconstructionServer(const ros::NodeHandle& node,
 }
 
 ReconstructionServer::~ReconstructionServer() {
-  // A request that is being worked on ends with the worker, and only then the spinner can.
+  // The worker answers all requests when it stops, so that the threads of the spinner can end.
   worker_->stop();
   subscriber_.shutdown();
   timer_.stop();
@@ -80,7 +80,7 @@ bool ReconstructionServer::onRequest(Request& request, Response& response) {
     response.mesh = polygonMeshOf<pcl_msgs::PolygonMesh>(*outcome.mesh, request.cloud.header);
   else
     ROS_WARN_STREAM_NAMED(name_, "A request cannot be answered with a mesh: " << outcome.message);
-  // false would keep the message from the caller.
+  // With false the caller would not receive the message.
   return true;
 }
 
