@@ -18,15 +18,11 @@ using spherical_param::InvalidInput;
 using spherical_param::Positions;
 using spherical_param::Result;
 
+/// The size of a real number; 0 for integers.
 std::size_t sizeOf(std::uint8_t datatype) {
-  switch (datatype) {
-  case pcl::PCLPointField::FLOAT32:
-    return sizeof(float);
-  case pcl::PCLPointField::FLOAT64:
+  if (datatype == pcl::PCLPointField::FLOAT64)
     return sizeof(double);
-  default:
-    return 0;
-  }
+  return datatype == pcl::PCLPointField::FLOAT32 ? sizeof(float) : 0;
 }
 
 const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name) {

@@ -211,22 +211,6 @@ TEST(ConcurrencyReconstructionWorker, StopAnswersAllThatWait) {
   EXPECT_EQ(gate.others().size(), 5U);
 }
 
-TEST(ConcurrencyReconstructionWorker, SettingsHoldFromTheNextCloudOn) {
-  ReconstructionWorker worker(
-      {}, [](const pcl::PCLPointCloud2&, const Settings& settings, const std::function<bool()>&) {
-        Outcome outcome;
-        outcome.status = Status::Done;
-        outcome.message = std::to_string(settings.options.embedding.starts);
-        return outcome;
-      });
-  Settings settings;
-  settings.options.embedding.starts = 7;
-  EXPECT_EQ(worker.process(cloudNumber(0)).message, "2");
-  worker.setSettings(settings);
-  EXPECT_EQ(worker.process(cloudNumber(0)).message, "7");
-  EXPECT_EQ(worker.settings().options.embedding.starts, 7);
-}
-
 // All together, with the real reconstruction: a stream from two threads, requests from two more.
 TEST(ConcurrencyReconstructionWorker, EachCloudIsAnsweredOnceUnderLoad) {
   Settings settings;
