@@ -91,7 +91,7 @@ dynamic_reconfigure::ConfigDescription description() {
 Config configOf(const Settings& settings) {
   Config config;
   for (const Parameter& parameter : parameters())
-    append(config, parameter.name, parameterOf(settings, parameter.name));
+    append(config, parameter.name, parameter.get(settings));
   config.groups.resize(1);
   config.groups[0].name = "Default";
   config.groups[0].state = 1;
@@ -108,16 +108,16 @@ Settings readSettings(const ros::NodeHandle& node) {
       continue;
     switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
-      setParameter(settings, parameter.name, static_cast<bool>(value));
+      parameter.set(settings, static_cast<bool>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeInt:
-      setParameter(settings, parameter.name, std::int64_t{static_cast<int>(value)});
+      parameter.set(settings, std::int64_t{static_cast<int>(value)});
       break;
     case XmlRpc::XmlRpcValue::TypeDouble:
-      setParameter(settings, parameter.name, static_cast<double>(value));
+      parameter.set(settings, static_cast<double>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeString:
-      setParameter(settings, parameter.name, static_cast<std::string>(value));
+      parameter.set(settings, static_cast<std::string>(value));
       break;
     default:
       throw spherical_param::InvalidInput(parameter.name +

@@ -58,9 +58,9 @@ public:
     for (const Parameter& parameter : parameters()) {
       const auto value = std::visit([](const auto& known) { return rclcpp::ParameterValue(known); },
                                     parameter.default_value);
-      setParameter(settings, parameter.name,
-                   neutralValue(parameter.name,
-                                declare_parameter(parameter.name, value, descriptorOf(parameter))));
+      parameter.set(settings,
+                    neutralValue(parameter.name, declare_parameter(parameter.name, value,
+                                                                   descriptorOf(parameter))));
     }
     // As latched topics of ROS 1: RViz shows the last mesh also if it is started later.
     const auto last_one = rclcpp::QoS(1).transient_local();
@@ -95,24 +95,17 @@ private:
     result.successful = true;
     Settings settings = worker_->settings();
     try {
-      for (const rclcpp::Parameter& parameter : changed)
-        if (isOurs(parameter.get_name()))
-          setParameter(settings, parameter.get_name(),
-                       neutralValue(parameter.get_name(), parameter.get_parameter_value()));
+      for (const rclcpp::Parameter& change : changed)
+        // Others, such as use_sim_time, are ROS's own.
+        for (const Parameter& parameter : parameters())
+          if (parameter.name == change.get_name())
+            parameter.set(settings, neutralValue(parameter.name, change.get_parameter_value()));
       worker_->setSettings(settings);
     } catch (const spherical_param::InvalidInput& error) {
       result.successful = false;
       result.reason = error.what();
     }
     return result;
-  }
-
-  /// Others, such as use_sim_time, are ROS's own.
-  static bool isOurs(const std::string& name) {
-    for (const Parameter& parameter : parameters())
-      if (parameter.name == name)
-        return true;
-    return false;
   }
 
   void publish(const Outcome& outcome, const Header& header) {
