@@ -81,7 +81,7 @@ struct Converter {
     else if constexpr (isDescribed(kOf<Value>))
       return classes.attr(describe(kOf<Value>).name)(**fieldsOf(value));
     else if constexpr (isDescribedList(kOf<Value>) || std::is_same_v<Value, Loops>)
-      return py::tuple(listOf(value, [this](const auto& item) { return object(item); }));
+      return py::tuple(listOf(value, [this](const auto& item) { return this->object(item); }));
     else if constexpr (std::is_enum_v<Value>)
       return py::str(nameOf(value));
     else if constexpr (std::is_arithmetic_v<Value>)
