@@ -17,7 +17,7 @@ from setuptools.command.sdist import sdist
 
 ROOT = Path(__file__).resolve().parent
 BUILD = Path("build", "wheel-files")
-# As deep as the builds of the presets: a compiler cache has the core of those.
+# As deep below the root as the builds of the presets, so that the compiler cache has the core.
 CMAKE_BUILD = Path("build", "wheel")
 
 
@@ -39,7 +39,7 @@ class CMakeBuild(build_ext):
             "SPHERICAL_PARAM_BUILD_PCL": "OFF",
             "SPHERICAL_PARAM_BUILD_TOOLS": "OFF",
             "SPHERICAL_PARAM_PYTHON_INSTALL_DIR": ".",
-            # By make, too, the libraries are compiled side by side.
+            # Lets make, too, compile the libraries at the same time.
             "CMAKE_OPTIMIZE_DEPENDENCIES": "ON",
             "Python3_EXECUTABLE": sys.executable,
         }
@@ -54,7 +54,7 @@ class CMakeBuild(build_ext):
         cmake = ["cmake", "-S", str(ROOT), "-B", folder]
         if "CMAKE_GENERATOR" not in os.environ:
             cmake += ["-G", "Ninja" if shutil.which("ninja") else "Unix Makefiles"]
-        # That of another generator or place would be refused.
+        # CMake refuses the cache of another generator or folder.
         Path(folder, "CMakeCache.txt").unlink(missing_ok=True)
         shutil.rmtree(Path(folder, "CMakeFiles"), ignore_errors=True)
         cmake += [f"-D{name}={value}" for name, value in settings.items()]

@@ -1,11 +1,11 @@
-# Which ROS the nodes are built for, in SPHERICAL_PARAM_ROS_VERSION: 1, 2 or none (empty).
+# Sets SPHERICAL_PARAM_ROS_VERSION to the ROS that the nodes are built for: 1, 2 or empty.
 #
 # SPHERICAL_PARAM_BUILD_ROS: AUTO builds the nodes where catkin or colcon build this project as a package of ROS, unless
 # packages are missing; ON stops if packages are missing; OFF.
 set(SPHERICAL_PARAM_BUILD_ROS AUTO CACHE STRING "Build the nodes of ROS: ON, OFF or AUTO (by catkin and colcon)")
 set_property(CACHE SPHERICAL_PARAM_BUILD_ROS PROPERTY STRINGS AUTO ON OFF)
 set(SPHERICAL_PARAM_ROS_VERSION "")
-# message_generation first: its macros must be there when those of the others are found.
+# message_generation first: the other packages use its macros.
 set(ros1_packages message_generation diagnostic_updater dynamic_reconfigure geometry_msgs nodelet
                   pcl_conversions pcl_msgs pluginlib roscpp sensor_msgs shape_msgs std_msgs
                   visualization_msgs)
@@ -39,8 +39,8 @@ foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)
 endforeach()
 
 if(SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO" AND is_package_of_ros)
-  # What catkin_make, catkin_make_isolated and colcon's task for catkin give. For ament, colcon gives
-  # nothing but its mark in the environment.
+  # catkin_make, catkin_make_isolated and colcon for catkin define one of these. For ament, colcon only
+  # sets a variable of the environment.
   if(DEFINED CATKIN_DEVEL_PREFIX OR DEFINED CATKIN_INSTALL_INTO_PREFIX_ROOT)
     set(SPHERICAL_PARAM_ROS_VERSION 1)
   elseif("$ENV{ROS_VERSION}" STREQUAL "2" AND DEFINED ENV{COLCON})

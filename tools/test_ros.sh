@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # shellcheck disable=SC2317  # functions are called by name, by check
 # The nodes of ROS: catkin, colcon and plain cmake build the same package.xml; node, nodelet,
-# service and launch files of ROS 1 work with a real master; the examples of doc/guide.md are run as
+# service and launch file of ROS 1 work with a real master; the examples of doc/guide.md are run as
 # printed. Installs what it needs. The last line counts tests.
 #
 #   tools/test_ros.sh            everything, built as doc/guide.md says
@@ -17,12 +17,12 @@ need_packages ros
 export PATH="/usr/bin:$PATH"
 unset ROS_VERSION ROS_PACKAGE_PATH ROS_MASTER_URI ROS_ROOT CMAKE_PREFIX_PATH AMENT_PREFIX_PATH
 tree="$PWD"
-# In depths as that of the other builds, so that the compiler cache knows what they compiled.
+# As deep below the root as the other builds, so that the compiler cache has what they compiled.
 colcon="$tree/build-colcon"
 options=(-DCMAKE_BUILD_TYPE=Release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON
   -DSPHERICAL_PARAM_BUILD_TESTS=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF)
 
-# What the examples of doc/guide.md have for ~, and where the first one installs.
+# The home of the examples in doc/guide.md, and where the first one installs.
 home="$tree/build/ros-home"
 installed_by_catkin="$home/ws/install_isolated"
 
@@ -69,29 +69,27 @@ of_all=("$package/package.xml" lib/libpcl_spherical_param.so
   lib/cmake/pcl_spherical_param/pcl_spherical_paramConfig.cmake)
 of_ros1=(lib/pcl_spherical_param/spherical_param_node lib/libspherical_param_nodelet.so
   "$package/nodelets.xml" "$package/launch/reconstruction.launch" "$package/srv/Reconstruct.srv"
-  "$package/launch/depth_camera.launch" "$package/config/depth_camera.yaml"
-  "$package/config/reconstruction.rviz"
+  "$package/config/depth_camera.yaml" "$package/config/reconstruction.rviz"
   include/pcl_spherical_param/Reconstruct.h)
 of_ros2=(share/ament_index/resource_index/packages/pcl_spherical_param)
 [ ! -d /usr/share/rclcpp ] || of_ros2+=(lib/pcl_spherical_param/spherical_param_node)
 
-build_type() { # <environment> <build type> <a dependency or ""> <one that is not>
-  /usr/bin/python3 - "$@" <<'END'
-import sys
+package_xml_fits_each_ros() {
+  /usr/bin/python3 - <<'END'
 from catkin_pkg.package import parse_package
-version, build_type, depend, other = sys.argv[1:]
-package = parse_package('package.xml')
-package.evaluate_conditions({'ROS_VERSION': version} if version else {})
-names = [d.name for d in package.build_depends + package.buildtool_depends + package.exec_depends
-         if d.evaluated_condition]
-assert package.get_build_type() == build_type, package.get_build_type()
-assert not depend or depend in names, names
-assert other not in names, names
-assert 'pcl_conversions' in names or not version, names
+for version, build_type, depend, other in (('1', 'catkin', 'roscpp', 'rclcpp'), ('2', 'ament_cmake', 'rclcpp', 'roscpp'),
+                                           (None, 'cmake', None, 'sensor_msgs')):
+    package = parse_package('package.xml')
+    package.evaluate_conditions({'ROS_VERSION': version} if version else {})
+    names = {each.name for each in package.build_depends + package.buildtool_depends + package.exec_depends
+             if each.evaluated_condition}
+    assert package.get_build_type() == build_type, package.get_build_type()
+    assert not version or {depend, 'pcl_conversions'} <= names, names
+    assert other not in names, names
 END
 }
 
-# What is only configured.
+# Builds that are only configured.
 work="$tree/build/ros-configured"
 rm -rf "$work"
 mkdir -p "$work"
@@ -138,7 +136,7 @@ END
   ROS_VERSION=1 no_nodes "$work/other/build" "$work/other" "${in_catkin[@]}"
 }
 
-# With packages that have nothing but what they tell CMake: targets as newer ones, variables as older.
+# With stand-ins for the packages: one gives targets, as newer packages do, the others give variables.
 node_of_ros2_is_configured() {
   local name folder names
   names="$(sed -n '/^set(ros2_packages/,/)/p' cmake/Ros.cmake | sed 's/set(ros2_packages//; s/)//')"
@@ -190,9 +188,7 @@ if [ "$quick" = yes ]; then
   finish
 fi
 
-check "package.xml: ROS 1 is built by catkin" build_type 1 catkin roscpp rclcpp || true
-check "package.xml: ROS 2 is built by ament" build_type 2 ament_cmake rclcpp roscpp || true
-check "package.xml: without ROS cmake builds" build_type "" cmake "" sensor_msgs || true
+check "package.xml: build type and dependencies fit each ROS" package_xml_fits_each_ros || true
 files=("${of_all[@]}" "${of_ros1[@]}")
 built "catkin, by doc/guide.md" "$installed_by_catkin" by_catkin
 built "colcon, ROS 1" "${colcon}1/install/pcl_spherical_param" by_colcon 1 "${colcon}1"
@@ -209,7 +205,7 @@ check "catkin, without PCL: no nodes" no_nodes "$work/without-pcl" "$tree" \
   "${in_catkin[@]}" -DSPHERICAL_PARAM_BUILD_PCL=OFF || true
 check "catkin_make: nodes in the one project of the workspace" nodes_in_workspace || true
 check "catkin: no nodes inside another package" no_nodes_inside_another || true
-check "ROS 2: launch files" test/ros/test_ros2_launch.py || true
+check "ROS 2: launch file" test/ros/test_ros2_launch.py || true
 
 check "ROS 1: nodes with a real master" ros1_tests || true
 

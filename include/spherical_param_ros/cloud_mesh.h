@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/types.h"
 #include "spherical_param_ros/parameters.h"
 
 #include <pcl/PCLPointCloud2.h>
@@ -16,9 +17,10 @@ struct Mesh {
   /// Header and every field of the cloud, one record a vertex; coordinates are moved ones after
   /// consolidation or smoothing.
   pcl::PCLPointCloud2 cloud;
-  std::vector<std::array<double, 3>> vertices;  ///< [unit of the cloud]
-  /// Indices of vertices, counter-clockwise from outside, or from one side of an open surface.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  spherical_param::Positions vertices;  ///< 3 x v [unit of the cloud]
+  /// 3 x t, indices of vertices, counter-clockwise from outside, or from one side of an open
+  /// surface.
+  spherical_param::Triangles triangles;
   /// Red, green, blue, alpha (255 if the cloud has none). Empty for clouds without colours.
   std::vector<std::array<std::uint8_t, 4>> colors;
 };
@@ -42,12 +44,8 @@ struct Outcome {
   std::shared_ptr<const Mesh> mesh;  ///< of Status::Done
   bool has_faults = false;           ///< a finding is a fault, see spherical_param::Finding
   std::vector<std::string> warnings;
-  std::size_t parts = 0;         ///< number of meshed parts
-  std::size_t points = 0;        ///< of the cloud
-  std::size_t outliers = 0;      ///< left out
-  std::size_t other_points = 0;  ///< of parts that were not meshed, or of no part
-  std::size_t self_intersections = 0;
-  double seconds = 0.0;  ///< of the reconstruction, wall time
+  std::size_t points = 0;  ///< of the cloud
+  double seconds = 0.0;    ///< of the reconstruction, wall time
 };
 
 /// Meshes a cloud, in double precision. Throws nothing: failures are in the outcome.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,24 +27,25 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 /// The value of an unset optional parameter.
 inline constexpr int kUnset = -1;
 
-/// A parameter, for declarations and documentation.
-struct ParameterInfo {
+/// A parameter, and its place in the settings.
+struct Parameter {
   std::string name;
   std::string description;  ///< meaning and range
   Value default_value;
   double min = 0.0;                  ///< of numbers; kUnset if optional
   double max = 0.0;                  ///< of numbers
   std::vector<std::string> choices;  ///< of strings
+  std::function<Value(const Settings&)> get;
+  std::function<void(Settings&, const Value&)> set;  ///< as setParameter()
 };
 
 /// All parameters: the rows of spherical_param::optionTable(), then those of Settings.
-const std::vector<ParameterInfo>& parameters();
+const std::vector<Parameter>& parameters();
 
 /// Changes one setting; the others stay.
 ///
-/// \throw spherical_param::InvalidInput for an unknown name, the wrong type or a value out of
-/// range:
-///        the message is "cause; remedy", and the settings are unchanged.
+/// \throw spherical_param::InvalidInput ("cause; remedy") for an unknown name, the wrong type or a
+///        value out of range. The settings are unchanged then.
 void setParameter(Settings& settings, const std::string& name, const Value& value);
 
 /// The value that setParameter() would take.

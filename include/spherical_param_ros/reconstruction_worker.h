@@ -10,18 +10,10 @@
 
 namespace spherical_param_ros {
 
-/// The work of a worker so far: of what was answered. At any time
-///   received = done + failed + cancelled + dropped + queued + (is_working ? 1 : 0).
-/// Refused requests count in `refused` only.
-struct Statistics {
-  std::uint64_t received = 0;
-  std::uint64_t done = 0;
-  std::uint64_t failed = 0;
-  std::uint64_t cancelled = 0;
-  std::uint64_t dropped = 0;
-  std::uint64_t refused = 0;  ///< requests beyond max_requests
-  std::size_t queued = 0;
+/// What a worker does, and its last result.
+struct WorkerState {
   bool is_working = false;
+  std::size_t waiting = 0;      ///< number of clouds in the queue, and of requests that wait
   std::optional<Outcome> last;  ///< of the last cloud that was done or failed, without its mesh
 };
 
@@ -40,9 +32,9 @@ class ReconstructionWorker {
 public:
   using Cloud = std::shared_ptr<const pcl::PCLPointCloud2>;
   /// Called once for each cloud of the stream, from the worker's thread; for a dropped cloud from
-  /// the thread that submits the newer one. Its exceptions are lost.
+  /// the thread that submits the newer one. Its exceptions are ignored.
   using Handler = std::function<void(const Outcome&)>;
-  /// meshCloud(), or a stand-in for tests.
+  /// meshCloud(), or a stand-in for tests, which must not throw either.
   using Mesher = std::function<Outcome(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                                        const std::function<bool()>& is_wanted)>;
 
@@ -55,9 +47,8 @@ public:
   ReconstructionWorker(const ReconstructionWorker&) = delete;
   ReconstructionWorker& operator=(const ReconstructionWorker&) = delete;
 
-  /// Takes a cloud of a stream. \return false if it pushed out another one, as the stream is faster
-  /// than the work, or the worker is stopped
-  bool submit(const Cloud& cloud, Handler handler);
+  /// Takes a cloud of a stream.
+  void submit(const Cloud& cloud, Handler handler);
 
   /// Meshes a cloud while the caller waits.
   Outcome process(const Cloud& cloud);
@@ -66,7 +57,7 @@ public:
   void setSettings(const Settings& settings);
   Settings settings() const;
 
-  Statistics statistics() const;
+  WorkerState state() const;
 
   /// Cancels the current work and drops waiting clouds. Later clouds are refused. Returns when all
   /// handlers have returned.
@@ -82,10 +73,9 @@ private:
 
   void run();
   bool takeJob(std::unique_lock<std::mutex>& lock, Job& job);
-  /// Moves the oldest clouds beyond the queue's depth into `dropped`.
-  void shorten(Jobs& dropped);
+  /// Takes the oldest clouds beyond the queue's depth out of the queue.
+  Jobs shorten();
   bool isWanted(bool is_request);
-  void count(const Outcome& outcome, bool is_request);
   static void answer(const Job& job, const Outcome& outcome);
   static void answerAll(const Jobs& jobs, Status status, const char* message);
 
@@ -95,7 +85,7 @@ private:
   Settings settings_;
   Jobs stream_;
   Jobs requests_;
-  Statistics statistics_;
+  WorkerState state_;
   bool is_newer_there_ = false;  ///< a cloud arrived since the running one began
   int cancellations_in_a_row_ = 0;
   bool is_request_next_ = true;  ///< where both wait

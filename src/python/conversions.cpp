@@ -11,7 +11,6 @@
 #include <set>
 #include <string>
 #include <type_traits>
-#include <variant>
 
 namespace spherical_param::python {
 namespace {
@@ -19,7 +18,7 @@ namespace {
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-/// A value of an option. Whatever Python takes for an integer or a number is one.
+/// A value of an option: all that Python accepts as an integer, a number or a text.
 OptionValue toValue(const OptionRow& row, const py::handle& value) {
   if (value.is_none())
     return {};
@@ -32,7 +31,7 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
       return text(point[0]) + ',' + text(point[1]) + ',' + text(point[2]);
     }
     if (PyIndex_Check(value.ptr()) != 0) {
-      PyObject* const index = PyNumber_Index(value.ptr());  // none for an array of two numbers
+      PyObject* const index = PyNumber_Index(value.ptr());  // null for an array of two numbers
       if (index == nullptr)
         throw py::error_already_set();
       return py::reinterpret_steal<py::int_>(index).cast<std::int64_t>();
@@ -43,17 +42,6 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
   }
   throw InvalidInput(row.name + " = " + py::repr(value).cast<std::string>() +
                      " cannot be used; use " + rangeOf(row));
-}
-
-py::object toObject(const OptionValue& value) {
-  return std::visit(
-      [](const auto& known) -> py::object {
-        if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
-          return py::none();
-        else
-          return py::cast(known);
-      },
-      value);
 }
 
 template <typename Items, typename Convert>
@@ -71,7 +59,8 @@ using Loops = std::vector<std::vector<Index>>;
 
 /// Turns what belongs to a surface into objects of Python.
 struct Converter {
-  bool has_volume;
+  bool has_volume = false;
+  py::module_ classes = py::module_::import("spherical_param._figures");
 
   template <typename Struct>
   py::dict fieldsOf(const Struct& self) const {
@@ -90,9 +79,9 @@ struct Converter {
     if constexpr (std::is_pointer_v<Value>)
       return value == nullptr ? py::none() : object(*value);
     else if constexpr (isDescribed(kOf<Value>))
-      return fieldsOf(value);
+      return classes.attr(describe(kOf<Value>).name)(**fieldsOf(value));
     else if constexpr (isDescribedList(kOf<Value>) || std::is_same_v<Value, Loops>)
-      return py::tuple(listOf(value, [this](const auto& item) { return object(item); }));
+      return py::tuple(listOf(value, [this](const auto& item) { return this->object(item); }));
     else if constexpr (std::is_enum_v<Value>)
       return py::str(nameOf(value));
     else if constexpr (std::is_arithmetic_v<Value>)
@@ -117,7 +106,6 @@ private:
 struct PythonType {
   std::string name;
   std::string shape = {};
-  std::string of_struct = {};
 };
 
 PythonType optional(PythonType type) {
@@ -149,11 +137,9 @@ struct PythonTypes {
   template <typename Value>
   static PythonType of(const Value*) {
     if constexpr (isDescribed(kOf<Value>)) {
-      const std::string name = describe(kOf<Value>).name;
-      return {name, "", name};
+      return {describe(kOf<Value>).name};
     } else if constexpr (isDescribedList(kOf<Value>)) {
-      const std::string name = describe(kOf<typename Value::value_type>).name;
-      return {"tuple[" + name + ", ...]", "", name};
+      return {"tuple[" + std::string(describe(kOf<typename Value::value_type>).name) + ", ...]"};
     } else if constexpr (std::is_enum_v<Value>) {
       std::string names;
       for (const char* name : namesOf(Value()))
@@ -196,7 +182,7 @@ void addRows(const Struct*, py::list& rows, std::set<std::string>& known) {
     if (std::is_pointer_v<Got> || field.kind == FieldKind::OfSolid)
       type = optional(type);
     fields.append(py::dict("name"_a = field.name, "type"_a = type.name,
-                           "help"_a = helpOf(field, type.shape), "struct"_a = type.of_struct));
+                           "help"_a = helpOf(field, type.shape)));
   });
   rows.append(py::dict("name"_a = about.name, "help"_a = about.help, "fields"_a = fields));
 }
@@ -213,7 +199,7 @@ py::list optionRows() {
     rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
                          "choices"_a = row.choices, "is_number"_a = row.is_number,
                          "is_integer"_a = row.is_integer, "is_point"_a = row.is_point,
-                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
+                         "optional"_a = row.optional, "default"_a = row.get({})));
   return rows;
 }
 
@@ -248,19 +234,14 @@ py::dict toDict(const Result& result) {
   py::dict stages;
   for (const StageTime& stage : result.stages)
     stages[py::str(stage.name)] = stage.seconds;
-  py::list findings;
-  for (const Finding& finding : result.findings)
-    findings.append(Converter{false}.fieldsOf(finding));
+  const Converter converter;
   const JoinedMesh mesh = joined(result);
-  return py::dict("surfaces"_a = py::tuple(surfaces),
-                  "mesh"_a = py::dict("vertices"_a = toArray(mesh.points),
-                                      "triangles"_a = toArray(mesh.triangles),
-                                      "input_of_vertex"_a = toArray(mesh.input_of_vertex),
-                                      "is_added"_a = toArray(mesh.is_added)),
-                  "view"_a = result.view ? Converter{false}.fieldsOf(*result.view)
-                                         : py::object(py::none()),
-                  "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,
-                  "verdict"_a = result.verdict, "findings"_a = py::tuple(findings),
+  return py::dict("surfaces"_a = surfaces, "vertices"_a = toArray(mesh.points),
+                  "triangles"_a = toArray(mesh.triangles),
+                  "input_of_vertex"_a = toArray(mesh.input_of_vertex),
+                  "_is_added"_a = toArray(mesh.is_added), "view"_a = converter.object(result.view),
+                  "left_out"_a = converter.object(result.left_out), "stages"_a = stages,
+                  "verdict"_a = result.verdict, "findings"_a = converter.object(result.findings),
                   "failures"_a = py::tuple(py::cast(result.failures)));
 }
 

@@ -9,7 +9,7 @@
 #include <pybind11/pybind11.h>
 
 /// Options of the core from dictionaries, and its results as dictionaries, whose keys are the names
-/// of the fields of the classes that the package makes of them.
+/// of the fields of Result and Results in Python.
 namespace spherical_param::python {
 
 /// The rows of optionTable() as the package in Python needs them.
@@ -23,11 +23,12 @@ Options toOptions(const pybind11::dict& values, Listener& listener);
 /// `normals` (n, 3), `viewpoint` and `unused` (u,) of a cloud; each may be None.
 CloudInfo toCloudInfo(const pybind11::dict& info);
 
-/// Structs in it are dictionaries, lists of structs and of arrays are tuples.
+/// The surfaces in it are dictionaries; other structs are objects of the classes that
+/// make_types.py writes. Lists of structs and of arrays are tuples.
 pybind11::dict toDict(const Result& result);
 
-/// The structs of a surface, those that others consist of first: name, help and fields, each of
-/// which has a name, a type in Python, a help and the name of the struct that it consists of.
+/// The structs of a result, those that others consist of first: name, help and fields, each of
+/// which has a name, a type in Python and a help.
 pybind11::list resultTable();
 
 pybind11::dict toDict(const MapDistortion& distortion);

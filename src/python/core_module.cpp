@@ -206,7 +206,7 @@ py::dict morphMeshes(const MappedMesh& first, const MappedMesh& second, const Ar
   return dict;
 }
 
-/// The package's exceptions, in the place of pybind11's choice for their bases in C++.
+/// Translates the exceptions of the core and the tools to those of the package.
 void registerErrors() {
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](const char* name, const std::exception& cause) {

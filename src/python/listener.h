@@ -22,8 +22,8 @@ public:
   /// Called without the interpreter's lock; takes it only where it calls Python.
   /// \return false to end the work: the function said so, or there is an exception.
   bool report(const char* stage, double fraction) {
-    // To take the interpreter's lock may mean to wait for another thread's turn to end, and without
-    // a function to call it is for signals alone.
+    // Taking the interpreter's lock may wait for another thread. Without a function to call, only
+    // signals need it.
     constexpr std::chrono::milliseconds between_signals(50);
     const auto now = std::chrono::steady_clock::now();
     if (callback_.is_none() && now - last_ < between_signals)
@@ -35,7 +35,9 @@ public:
         throw pybind11::error_already_set();
       if (callback_.is_none())
         return true;
-      return callback_(stage, fraction).ptr() != Py_False;
+      // Only False ends the work, NumPy's too: most functions return None.
+      pybind11::detail::make_caster<bool> answer;
+      return !answer.load(callback_(stage, fraction), false) || static_cast<bool>(answer);
     } catch (...) {
       error_ = std::current_exception();
       return false;

@@ -14,21 +14,15 @@
 namespace spherical_param_ros {
 namespace {
 
-using spherical_param::Index;
 using spherical_param::InvalidInput;
 using spherical_param::Positions;
 using spherical_param::Result;
-using spherical_param::Surface;
 
+/// The size of a real number; 0 for integers.
 std::size_t sizeOf(std::uint8_t datatype) {
-  switch (datatype) {
-  case pcl::PCLPointField::FLOAT32:
-    return sizeof(float);
-  case pcl::PCLPointField::FLOAT64:
+  if (datatype == pcl::PCLPointField::FLOAT64)
     return sizeof(double);
-  default:
-    return 0;
-  }
+  return datatype == pcl::PCLPointField::FLOAT32 ? sizeof(float) : 0;
 }
 
 const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name) {
@@ -38,7 +32,7 @@ const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std:
   return nullptr;
 }
 
-/// Checks that all records are where the sizes of the message say. \throw InvalidInput
+/// Checks that the sizes and the fields of the message fit its data. \throw InvalidInput
 void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
   if (points == 0)
@@ -78,7 +72,7 @@ void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   }
 }
 
-/// Where the record of a point begins. The rows may have bytes at their ends that belong to none.
+/// The record of a point. Rows may end with padding.
 const std::uint8_t* recordOf(const pcl::PCLPointCloud2& cloud, std::size_t point) {
   const std::size_t row = point / cloud.width;
   return cloud.data.data() + row * cloud.row_step + (point - row * cloud.width) * cloud.point_step;
@@ -146,7 +140,7 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
   if (field->datatype != pcl::PCLPointField::FLOAT32 &&
       field->datatype != pcl::PCLPointField::UINT32 && field->datatype != pcl::PCLPointField::INT32)
     return;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.cloud.width; ++i) {
     const std::uint8_t* bgra = recordOf(mesh.cloud, i) + field->offset;
     mesh.colors.push_back({bgra[2], bgra[1], bgra[0], has_alpha ? bgra[3] : std::uint8_t{255}});
   }
@@ -166,26 +160,22 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud, const Res
   kept.row_step = kept.width * kept.point_step;
   kept.is_dense = 1;
   kept.data.resize(vertices * kept.point_step);
-  mesh->vertices.resize(vertices);
   const Axes axes = axesOf(cloud);
   for (std::size_t v = 0; v < vertices; ++v) {
     std::uint8_t* record = kept.data.data() + v * kept.point_step;
     std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(joined.input_of_vertex[v])),
                 kept.point_step);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
       setCoordinate(record, *axes[axis],
                     joined.points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(v)));
-      mesh->vertices[v][axis] = coordinate(record, *axes[axis]);
-    }
   }
-  mesh->triangles.reserve(static_cast<std::size_t>(joined.triangles.cols()));
-  for (const auto triangle : joined.triangles.cast<std::uint32_t>().colwise())
-    mesh->triangles.push_back({triangle[0], triangle[1], triangle[2]});
+  mesh->vertices = vectorsOf(kept, axes);  // in the precision of the cloud
+  mesh->triangles = joined.triangles;
   copyColors(cloud, *mesh);
   return mesh;
 }
 
-/// What is to be said of a result.
+/// Puts verdict, warnings and faults of a result into the outcome.
 void describe(const Result& result, Outcome& outcome) {
   outcome.warnings = result.failures;
   for (const spherical_param::Finding& finding : result.findings)
@@ -194,11 +184,6 @@ void describe(const Result& result, Outcome& outcome) {
                                                             " = " + finding.value);
   outcome.message = result.verdict;
   outcome.has_faults = !result.failures.empty() || spherical_param::hasFault(result.findings);
-  outcome.parts = result.surfaces.size();
-  outcome.outliers = result.left_out.outliers.size();
-  outcome.other_points = result.left_out.other_parts.size();
-  for (const Surface& surface : result.surfaces)
-    outcome.self_intersections += surface.self_intersections.size();
 }
 
 void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,

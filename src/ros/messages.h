@@ -4,7 +4,9 @@
 
 #include <pcl_conversions/pcl_conversions.h>
 
-/// What the nodes of ROS 1 and 2 say, in the types of either: these have the same fields.
+#include <algorithm>
+
+/// Messages of ROS 1 and 2, whose types have the same fields.
 namespace spherical_param_ros {
 
 template <typename PointCloud2>
@@ -21,14 +23,15 @@ PolygonMesh polygonMeshOf(const Mesh& mesh, const Header& header) {
   pcl_conversions::fromPCL(mesh.cloud, message.cloud);
   message.header = header;
   message.cloud.header = header;
-  message.polygons.resize(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    message.polygons[t].vertices.assign(mesh.triangles[t].begin(), mesh.triangles[t].end());
+  for (const auto triangle : mesh.triangles.colwise()) {
+    message.polygons.emplace_back();
+    message.polygons.back().vertices.assign(triangle.begin(), triangle.end());
+  }
   return message;
 }
 
 template <typename Point>
-Point pointOf(const std::array<double, 3>& vertex) {
+Point pointOf(const Eigen::Vector3d& vertex) {
   Point point;
   point.x = vertex[0];
   point.y = vertex[1];
@@ -40,13 +43,12 @@ Point pointOf(const std::array<double, 3>& vertex) {
 template <typename Shape>
 Shape shapeOf(const Mesh& mesh) {
   Shape message;
-  message.vertices.reserve(mesh.vertices.size());
-  for (const auto& vertex : mesh.vertices)
+  for (const auto vertex : mesh.vertices.colwise())
     message.vertices.push_back(pointOf<typename decltype(message.vertices)::value_type>(vertex));
-  message.triangles.resize(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      message.triangles[t].vertex_indices[corner] = mesh.triangles[t][corner];
+  for (const auto triangle : mesh.triangles.colwise()) {
+    message.triangles.emplace_back();
+    std::copy(triangle.begin(), triangle.end(), message.triangles.back().vertex_indices.begin());
+  }
   return message;
 }
 
@@ -73,54 +75,33 @@ Marker markerOf(const Mesh& mesh, const Header& header) {
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.r = marker.color.g = marker.color.b = 0.8F;
   marker.color.a = 1.0F;
-  marker.points.reserve(3 * mesh.triangles.size());
-  marker.colors.reserve(mesh.colors.empty() ? 0 : 3 * mesh.triangles.size());
   using Point = typename decltype(marker.points)::value_type;
   using Color = typename decltype(marker.colors)::value_type;
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle) {
-      marker.points.push_back(pointOf<Point>(mesh.vertices[vertex]));
-      if (!mesh.colors.empty())
-        marker.colors.push_back(colorOf<Color>(mesh.colors[vertex]));
-    }
+  for (const spherical_param::Index vertex : mesh.triangles.reshaped()) {
+    marker.points.push_back(pointOf<Point>(mesh.vertices.col(vertex)));
+    if (!mesh.colors.empty())
+      marker.colors.push_back(colorOf<Color>(mesh.colors[static_cast<std::size_t>(vertex)]));
+  }
   return marker;
 }
 
-/// What ROS's diagnostics say of a worker.
-class Diagnosis {
-public:
-  template <typename Wrapper>
-  void tell(const Statistics& statistics, Wrapper& status) {
-    const Outcome last = statistics.last.value_or(Outcome());
-    const std::string state = statistics.is_working ? "working" : "idle";
-    if (statistics.failed > failed_before_)
-      status.summary(Wrapper::WARN, last.status == Status::Failed
-                                        ? "the last cloud could not be meshed"
-                                        : "a cloud could not be meshed");
-    else if (last.has_faults)
-      status.summary(Wrapper::WARN, "the last mesh has faults");
-    else
-      status.summary(Wrapper::OK, state);
-    failed_before_ = statistics.failed;
-    status.add("state", state);
-    status.add("last result", std::string(statistics.last ? nameOf(last.status) : "none"));
-    status.add("last message", last.message);
-    status.add("last time [s]", last.seconds);
-    status.add("last cloud [points]", last.points);
-    status.add("last parts", last.parts);
-    status.add("last outliers [points]", last.outliers);
-    status.add("last other parts [points]", last.other_points);
-    status.add("last self-intersections", last.self_intersections);
-    status.add("received clouds", statistics.received);
-    status.add("done clouds", statistics.done);
-    status.add("failed clouds", statistics.failed);
-    status.add("dropped clouds", statistics.dropped);
-    status.add("cancelled clouds", statistics.cancelled);
-    status.add("waiting clouds", statistics.queued);
-  }
-
-private:
-  std::uint64_t failed_before_ = 0;  ///< clouds that had failed when this was last said
-};
+/// Writes the state of a worker into a status of ROS's diagnostics.
+template <typename Wrapper>
+void diagnose(const WorkerState& worker, Wrapper& status) {
+  const std::string state = worker.is_working ? "working" : "idle";
+  const Outcome last = worker.last.value_or(Outcome());
+  if (worker.last && last.status == Status::Failed)
+    status.summary(Wrapper::WARN, "the last cloud could not be meshed");
+  else if (last.has_faults)
+    status.summary(Wrapper::WARN, "the last mesh has faults");
+  else
+    status.summary(Wrapper::OK, state);
+  status.add("state", state);
+  status.add("waiting clouds", worker.waiting);
+  status.add("last result", std::string(worker.last ? nameOf(last.status) : "none"));
+  status.add("last message", last.message);
+  status.add("last time [s]", last.seconds);
+  status.add("last cloud [points]", last.points);
+}
 
 }  // namespace spherical_param_ros

@@ -4,7 +4,6 @@
 #include "spherical_param/option_table.h"
 
 #include <charconv>
-#include <functional>
 #include <limits>
 #include <locale>
 #include <sstream>
@@ -16,13 +15,6 @@ namespace {
 using spherical_param::InvalidInput;
 using spherical_param::OptionRow;
 using spherical_param::OptionValue;
-
-/// A parameter and its place in the settings.
-struct Parameter {
-  ParameterInfo info;
-  std::function<Value(const Settings&)> get;
-  std::function<void(Settings&, const Value&)> set;  ///< throws InvalidInput
-};
 
 [[noreturn]] void refuse(const std::string& name, const Value& value, const std::string& range) {
   throw InvalidInput(name + " = " + textOf(value) + " cannot be used; use " + range);
@@ -78,22 +70,23 @@ OptionValue toOption(const OptionRow& row, const Value& value) {
 /// The parameter of an option of the core.
 Parameter option(const OptionRow& row) {
   const std::string unset = row.optional ? ", or -1: unset" : "";
-  ParameterInfo info{row.name,
-                     row.help + "; " + rangeOf(row) + unset,
-                     toValue(row, row.get({})),
-                     row.optional ? kUnset : row.min,
-                     row.max,
-                     row.choices};
+  Parameter parameter{
+      row.name,
+      row.help + "; " + rangeOf(row) + unset,
+      toValue(row, row.get({})),
+      row.optional ? kUnset : row.min,
+      row.max,
+      row.choices,
+      [&row](const Settings& settings) { return toValue(row, row.get(settings.options)); },
+      [&row](Settings& settings, const Value& value) {
+        setOption(settings.options, row.name, toOption(row, value));
+      }};
   if ((row.is_number || row.is_point) && isText(row)) {
-    // Any text: a number, or a point, may be among them.
-    info.choices.clear();
-    info.min = info.max = 0.0;
+    // Any text may be given: it may be a number or a point.
+    parameter.choices.clear();
+    parameter.min = parameter.max = 0.0;
   }
-  return {info,
-          [&row](const Settings& settings) { return toValue(row, row.get(settings.options)); },
-          [&row](Settings& settings, const Value& value) {
-            setOption(settings.options, row.name, toOption(row, value));
-          }};
+  return parameter;
 }
 
 /// A parameter that is a field of the settings: true or false, or an integer from `min` up.
@@ -108,7 +101,12 @@ Parameter own(const std::string& name, const std::string& description, Field Set
   const auto get = [field](const Settings& settings) {
     return Value(static_cast<Known>(settings.*field));
   };
-  return {{name, description + "; " + range, get({}), double(min), double(max), {}},
+  return {name,
+          description + "; " + range,
+          get({}),
+          double(min),
+          double(max),
+          {},
           get,
           [=](Settings& settings, const Value& value) {
             const auto* known = std::get_if<Known>(&value);
@@ -133,30 +131,20 @@ std::vector<Parameter> makeParameters() {
   return all;
 }
 
-const std::vector<Parameter>& table() {
-  static const std::vector<Parameter> all = makeParameters();
-  return all;
-}
-
 const Parameter& find(const std::string& name) {
   std::string names;
-  for (const Parameter& parameter : table()) {
-    if (parameter.info.name == name)
+  for (const Parameter& parameter : parameters()) {
+    if (parameter.name == name)
       return parameter;
-    names += (names.empty() ? "" : ", ") + parameter.info.name;
+    names += (names.empty() ? "" : ", ") + parameter.name;
   }
   throw InvalidInput("unknown parameter '" + name + "'; use one of " + names);
 }
 
 }  // namespace
 
-const std::vector<ParameterInfo>& parameters() {
-  static const std::vector<ParameterInfo> all = [] {
-    std::vector<ParameterInfo> infos;
-    for (const Parameter& parameter : table())
-      infos.push_back(parameter.info);
-    return infos;
-  }();
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> all = makeParameters();
   return all;
 }
 

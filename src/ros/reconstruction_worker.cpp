@@ -1,7 +1,6 @@
 #include "spherical_param_ros/reconstruction_worker.h"
 
 #include <algorithm>
-#include <exception>
 #include <future>
 #include <utility>
 
@@ -26,24 +25,21 @@ ReconstructionWorker::~ReconstructionWorker() {
   stop();
 }
 
-bool ReconstructionWorker::submit(const Cloud& cloud, Handler handler) {
+void ReconstructionWorker::submit(const Cloud& cloud, Handler handler) {
   Job job{cloud, std::move(handler), false};
   Jobs dropped;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ++statistics_.received;
     if (is_stopped_) {
-      ++statistics_.dropped;
       dropped.push_back(std::move(job));
     } else {
       stream_.push_back(std::move(job));
       is_newer_there_ = true;
-      shorten(dropped);
+      dropped = shorten();
     }
   }
   work_or_stop_.notify_one();
   answerAll(dropped, Status::Dropped, "a newer cloud took its place; publish more slowly");
-  return dropped.empty();
 }
 
 Outcome ReconstructionWorker::process(const Cloud& cloud) {
@@ -51,12 +47,10 @@ Outcome ReconstructionWorker::process(const Cloud& cloud) {
   const auto promise = std::make_shared<std::promise<Outcome>>();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (is_stopped_ || requests_.size() >= max_requests) {
-      ++statistics_.refused;
-      return withoutMesh(Status::Refused,
-                         is_stopped_ ? kStopping : "too many requests wait; ask again later");
-    }
-    ++statistics_.received;
+    if (is_stopped_)
+      return withoutMesh(Status::Refused, kStopping);
+    if (requests_.size() >= max_requests)
+      return withoutMesh(Status::Refused, "too many requests wait; ask again later");
     requests_.push_back(
         {cloud, [promise](const Outcome& outcome) { promise->set_value(outcome); }, true});
   }
@@ -69,7 +63,7 @@ void ReconstructionWorker::setSettings(const Settings& settings) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     settings_ = settings;
-    shorten(dropped);
+    dropped = shorten();
   }
   answerAll(dropped, Status::Dropped, "the queue became shorter; raise queue_depth");
 }
@@ -79,11 +73,11 @@ Settings ReconstructionWorker::settings() const {
   return settings_;
 }
 
-Statistics ReconstructionWorker::statistics() const {
+WorkerState ReconstructionWorker::state() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  Statistics statistics = statistics_;
-  statistics.queued = stream_.size() + requests_.size();
-  return statistics;
+  WorkerState state = state_;
+  state.waiting = stream_.size() + requests_.size();
+  return state;
 }
 
 void ReconstructionWorker::stop() {
@@ -94,7 +88,6 @@ void ReconstructionWorker::stop() {
     dropped.swap(stream_);
     dropped.insert(dropped.end(), requests_.begin(), requests_.end());
     requests_.clear();
-    statistics_.dropped += dropped.size();
   }
   work_or_stop_.notify_all();
   answerAll(dropped, Status::Dropped, kStopping);
@@ -109,20 +102,21 @@ void ReconstructionWorker::run() {
     const Settings settings = settings_;
     const bool is_request = job.is_request;
     lock.unlock();
-    Outcome outcome;
-    try {
-      outcome = mesher_(*job.cloud, settings, [this, is_request] { return isWanted(is_request); });
-    } catch (const std::exception& error) {
-      outcome = withoutMesh(Status::Failed, error.what());
-    } catch (...) {
-      outcome = withoutMesh(Status::Failed, "an unknown exception");
-    }
+    Outcome outcome =
+        mesher_(*job.cloud, settings, [this, is_request] { return isWanted(is_request); });
     answer(job, outcome);
-    // Gives cloud and mesh back before the next ones come.
+    // Frees cloud and mesh before the next ones come.
     job = Job();
     outcome.mesh.reset();
     lock.lock();
-    count(outcome, is_request);
+    state_.is_working = false;
+    if (outcome.status == Status::Cancelled) {
+      ++cancellations_in_a_row_;
+      continue;
+    }
+    if (!is_request)
+      cancellations_in_a_row_ = 0;
+    state_.last = outcome;
   }
 }
 
@@ -138,17 +132,18 @@ bool ReconstructionWorker::takeJob(std::unique_lock<std::mutex>& lock, Job& job)
   jobs.pop_front();
   if (!take_request)
     is_newer_there_ = false;
-  statistics_.is_working = true;
+  state_.is_working = true;
   return true;
 }
 
-void ReconstructionWorker::shorten(Jobs& dropped) {
+ReconstructionWorker::Jobs ReconstructionWorker::shorten() {
   const std::size_t depth = std::max<std::size_t>(settings_.queue_depth, 1);
+  Jobs dropped;
   while (stream_.size() > depth) {
     dropped.push_back(std::move(stream_.front()));
     stream_.pop_front();
-    ++statistics_.dropped;
   }
+  return dropped;
 }
 
 bool ReconstructionWorker::isWanted(bool is_request) {
@@ -157,19 +152,6 @@ bool ReconstructionWorker::isWanted(bool is_request) {
     return false;
   return is_request || !is_newer_there_ || !settings_.cancel_running ||
          cancellations_in_a_row_ >= settings_.max_cancellations;
-}
-
-void ReconstructionWorker::count(const Outcome& outcome, bool is_request) {
-  statistics_.is_working = false;
-  if (outcome.status == Status::Cancelled) {
-    ++statistics_.cancelled;
-    ++cancellations_in_a_row_;
-    return;
-  }
-  ++(outcome.status == Status::Done ? statistics_.done : statistics_.failed);
-  if (!is_request)
-    cancellations_in_a_row_ = 0;
-  statistics_.last = outcome;
 }
 
 void ReconstructionWorker::answer(const Job& job, const Outcome& outcome) {

@@ -15,7 +15,7 @@ if(NOT module MATCHES "^[^;]*/lib/python3[.0-9]*/(site|dist)-packages/spherical_
 endif()
 get_filename_component(package ${module} DIRECTORY)
 get_filename_component(folder ${package} DIRECTORY)
-foreach(file py.typed _core.pyi _figures.pyi _reconstruct.pyi)
+foreach(file py.typed _core.pyi _reconstruct.pyi)
   if(NOT EXISTS ${package}/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()

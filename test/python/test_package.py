@@ -41,7 +41,8 @@ class Documentation(unittest.TestCase):
                             self.assertTrue(inspect.getdoc(member), own)
                     continue
                 parameters = inspect.signature(thing).parameters
-                self.assertEqual(set(typing.get_type_hints(thing)), {*parameters, "return"})
+                if thing is not sp.reconstruct:  # whose types are in _reconstruct.pyi
+                    self.assertEqual(set(typing.get_type_hints(thing)), {*parameters, "return"})
                 for parameter in parameters:
                     self.assertRegex(text, rf"(?m)(^|[ ,;]){parameter}( :|, |$)")
                 self.assertIn("Raises\n------\nInvalidInput", text)
@@ -53,13 +54,13 @@ class Documentation(unittest.TestCase):
         for function in overloads:
             names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
             self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
-        stub = ast.parse((Path(sp.__file__).parent / "_figures.pyi").read_text())
-        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+            types = {argument.arg: ast.unparse(argument.annotation) for argument in function.args.kwonlyargs}
+            for row in _core.option_table():
+                if row["name"] not in ("parts", "topology"):  # by which the overloads differ
+                    self.assertEqual([name for name in row["choices"] if repr(name) not in types[row["name"]]], [])
         for name in ("Topology", "Diagnosis", "Embedding", "Opening"):
-            names = [node.target.id for node in classes[name].body]
             made = getattr(sp, name)
-            self.assertEqual(names, [field.name for field in dataclasses.fields(made)])
-            self.assertEqual(set(typing.get_type_hints(made)), set(names))
+            self.assertEqual(set(typing.get_type_hints(made)), {field.name for field in dataclasses.fields(made)})
 
     def test_help_explains_the_marks_of_triangles(self):
         for mark in sp.TriangleMark:

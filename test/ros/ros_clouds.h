@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-/// Clouds as middleware brings them.
+/// Clouds as ROS delivers them.
 namespace spherical_param_ros::test {
 
 inline pcl::PCLPointField field(const std::string& name, std::uint32_t offset,

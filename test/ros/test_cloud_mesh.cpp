@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <set>
+#include <utility>
 
 namespace spherical_param_ros {
 namespace {
@@ -44,27 +44,27 @@ Positions positionsOf(const pcl::PCLPointCloud2& cloud) {
   return positions;
 }
 
-/// The outcome has the core's mesh of these points, to the bit; moved ones in their precision.
+/// The outcome has the core's mesh, to the bit, with moved vertices in the precision of the cloud,
+/// and all other fields of the points.
 template <typename Scalar>
-void expectCoresMesh(const Outcome& outcome, const Positions& points, const Settings& settings) {
-  const auto whole = spherical_param::reconstruct(points, settings.options);
-  const spherical_param::Surface& result = whole.surface();
-  const Positions vertices = result.points.cast<Scalar>().template cast<double>();
+void expectCoresMesh(const Outcome& outcome, const pcl::PCLPointCloud2& cloud,
+                     const Settings& settings = {}) {
+  const auto result = spherical_param::reconstruct(positionsOf<Scalar>(cloud), settings.options);
+  const spherical_param::JoinedMesh core = spherical_param::joined(result);
+  const Positions vertices = core.points.cast<Scalar>().template cast<double>();
   const Mesh& mesh = *outcome.mesh;
-  ASSERT_EQ(mesh.vertices.size(), static_cast<std::size_t>(vertices.cols()));
-  ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(result.triangles.cols()));
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    EXPECT_EQ(Eigen::Vector3d(mesh.vertices[i].data()), vertices.col(static_cast<int>(i)));
   EXPECT_EQ(positionsOf<Scalar>(mesh.cloud), vertices);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      EXPECT_EQ(static_cast<spherical_param::Index>(mesh.triangles[t][corner]),
-                result.triangles(static_cast<int>(corner), static_cast<int>(t)));
+  EXPECT_EQ(mesh.vertices, vertices);
+  EXPECT_EQ(mesh.triangles, core.triangles);
+  for (std::size_t v = 0; v < core.input_of_vertex.size(); ++v) {
+    Record expected = record(cloud, static_cast<std::size_t>(core.input_of_vertex[v]));
+    const Record found = record(mesh.cloud, v);
+    std::copy_n(found.begin(), 3 * sizeof(Scalar), expected.begin());
+    EXPECT_EQ(found, expected);
+  }
   EXPECT_EQ(outcome.message, result.verdict);
-  EXPECT_EQ(outcome.has_faults, std::any_of(result.findings.begin(), result.findings.end(),
-                                            [](const auto& finding) { return finding.is_fault; }));
+  EXPECT_EQ(outcome.has_faults, spherical_param::hasFault(result.findings));
   EXPECT_EQ(outcome.warnings.size(), result.findings.size());
-  EXPECT_EQ(outcome.self_intersections, result.self_intersections.size());
 }
 
 TEST(RosCloudMesh, KeepsHeaderFieldsAndColoursOfDistinctFinitePoints) {
@@ -88,15 +88,12 @@ TEST(RosCloudMesh, KeepsHeaderFieldsAndColoursOfDistinctFinitePoints) {
       if (i == 7 || i == 20)
         continue;
       const Record bytes = record(cloud, i);
-      EXPECT_EQ(record(mesh.cloud, vertex), bytes);
       const std::uint8_t alpha = has_alpha ? bytes[19] : std::uint8_t{255};
       EXPECT_EQ(mesh.colors[vertex],
                 (std::array<std::uint8_t, 4>{bytes[18], bytes[17], bytes[16], alpha}));
       ++vertex;
     }
-    Positions finite = positionsOf<float>(cloud);
-    finite.middleCols(7, 292) = finite.rightCols(292).eval();
-    expectCoresMesh<float>(outcome, finite.leftCols(299), {});
+    expectCoresMesh<float>(outcome, cloud);
   }
 }
 
@@ -113,7 +110,7 @@ TEST(RosCloudMesh, OrganizedCloudsWithPaddedRowsAreRead) {
   settings.max_points = 200;
   const Outcome outcome = meshed(padded, settings);
   EXPECT_EQ(outcome.mesh->cloud.data, flat.data);
-  expectCoresMesh<float>(outcome, positionsOf<float>(flat), {});
+  expectCoresMesh<float>(outcome, flat);
 }
 
 // UTM coordinates, which single precision would put on a grid of half a metre, without colours.
@@ -137,121 +134,48 @@ TEST(RosCloudMesh, DoublePrecisionKeepsItsDigits) {
     settings.max_points = 0;  // no limit
     const Outcome outcome = meshed(cloud, settings);
     EXPECT_TRUE(outcome.mesh->colors.empty());
-    expectCoresMesh<double>(outcome, points, settings);
+    expectCoresMesh<double>(outcome, cloud, settings);
   }
 }
 
-TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
-  pcl::PCLPointCloud2 cloud = ellipsoid(1500);
-  setPoint(cloud, 20, kNan, 0.0, 0.0);
-  setPoint(cloud, 100, 20.0, 0.0, 0.0);
-  Settings settings;
-  settings.options.topology = spherical_param::TopologyMode::Sphere;
-  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 stray point in the mesh"),
-            std::string::npos);
-  settings.options.outliers = spherical_param::OutlierMode::Auto;
-  const Outcome outcome = meshed(cloud, settings);
-  EXPECT_EQ(outcome.outliers, 1U);
-  ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
-  EXPECT_EQ(record(outcome.mesh->cloud, 98), record(cloud, 99));
-  EXPECT_EQ(record(outcome.mesh->cloud, 99), record(cloud, 101));
+/// The points of a bowl, of a small ellipsoid beside it, and of a stray point.
+pcl::PCLPointCloud2 severalParts() {
+  pcl::PCLPointCloud2 cloud = ellipsoid(1501);
+  const Positions small = positionsOf<float>(ellipsoid(501));
+  for (std::uint32_t i = 0; i < 500; ++i)
+    setPoint(cloud, i, small(0, i) + 6.0, small(1, i), small(2, i));
+  setPoint(cloud, 500, 0.0, 50.0, 0.0);
+  return cloud;
+}
+
+TEST(RosCloudMesh, OptionsHoldAndAllSurfacesAreOneMesh) {
+  const pcl::PCLPointCloud2 cloud = severalParts();
+  Settings each;
+  each.options.surface = spherical_param::SurfaceMode::Open;
+  each.options.smoothing = 3;
+  Settings filled;
+  filled.options.parts = spherical_param::PartsMode::Largest;
+  filled.options.surface = spherical_param::SurfaceMode::Closed;
+  filled.options.fill = spherical_param::FillMode::Smooth;
+  Settings sphere;
+  sphere.options.topology = spherical_param::TopologyMode::Sphere;
+  for (const auto& [settings, has_faults] :
+       {std::pair(each, false), std::pair(filled, false), std::pair(sphere, true)}) {
+    const Outcome outcome = meshed(cloud, settings);
+    EXPECT_EQ(outcome.has_faults, has_faults) << outcome.message;
+    EXPECT_EQ(outcome.mesh->colors.size(), outcome.mesh->cloud.width);
+    expectCoresMesh<float>(outcome, cloud, settings);
+  }
+}
+
+TEST(RosCloudMesh, TheWorkEndsWhenItIsNoLongerWanted) {
   for (const int wanted : {0, 1, 2, 20}) {
     int asked = 0;
-    const Outcome ended = meshCloud(cloud, settings, [&] { return asked++ < wanted; });
+    const Outcome ended = meshCloud(ellipsoid(1500), {}, [&] { return asked++ < wanted; });
     EXPECT_EQ(ended.status, Status::Cancelled);
     EXPECT_EQ(ended.mesh, nullptr);
     EXPECT_EQ(asked, wanted + 1);
   }
-}
-
-/// Takes some records of a cloud.
-pcl::PCLPointCloud2 some(pcl::PCLPointCloud2 cloud, std::uint32_t first, std::uint32_t count) {
-  const auto begin = cloud.data.begin() + std::ptrdiff_t{first} * cloud.point_step;
-  cloud.data = Record(begin, begin + std::ptrdiff_t{count} * cloud.point_step);
-  cloud.width = count;
-  cloud.row_step = count * cloud.point_step;
-  return cloud;
-}
-
-/// Ellipsoids of 400 and of 700 points with a distance between them, and three single points.
-pcl::PCLPointCloud2 severalParts() {
-  pcl::PCLPointCloud2 cloud = ellipsoid(1103);
-  const Positions small = positionsOf<float>(ellipsoid(400));
-  const Positions large = positionsOf<float>(ellipsoid(700));
-  for (std::uint32_t i = 0; i < cloud.width; ++i) {
-    Eigen::Vector3d p(100.0 * (i - 1099.0), 50.0, 0.0);
-    if (i < 400)
-      p = small.col(i);
-    else if (i < 1100)
-      p = large.col(i - 400) + Eigen::Vector3d(6.0, 0.0, 0.0);
-    setPoint(cloud, i, p.x(), p.y(), p.z());
-  }
-  return cloud;
-}
-
-TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
-  const pcl::PCLPointCloud2 cloud = severalParts();
-  Settings settings;
-  settings.options.parts = spherical_param::PartsMode::Each;
-  settings.options.smoothing = 3;
-  settings.options.time_limit = 100.0;
-  const Outcome outcome = meshed(cloud, settings);
-  EXPECT_EQ(outcome.parts, 2U);
-  EXPECT_EQ(outcome.outliers, 3U);
-  EXPECT_EQ(outcome.message, "2 surfaces, all sound; 3 stray points left out.");
-  const Mesh& mesh = *outcome.mesh;
-  ASSERT_EQ(mesh.vertices.size(), 1100U);
-  EXPECT_EQ(mesh.colors.size(), 1100U);
-  settings.options.parts = spherical_param::PartsMode::All;
-  std::uint32_t first = 0;
-  std::size_t first_triangle = 0;
-  for (const auto& [from, count] : {std::pair(400U, 700U), std::pair(0U, 400U)}) {
-    const Outcome alone = meshed(some(cloud, from, count), settings);
-    EXPECT_EQ(some(mesh.cloud, first, count).data, alone.mesh->cloud.data);
-    for (std::size_t t = 0; t < alone.mesh->triangles.size(); ++t)
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        EXPECT_EQ(mesh.triangles.at(first_triangle + t)[corner],
-                  alone.mesh->triangles[t][corner] + first);
-    first += count;
-    first_triangle += alone.mesh->triangles.size();
-  }
-  EXPECT_EQ(mesh.triangles.size(), first_triangle);
-
-  settings.options.parts = spherical_param::PartsMode::Each;
-  settings.options.min_points = 500;
-  EXPECT_EQ(meshed(cloud, settings).other_points, 400U);
-}
-
-TEST(RosCloudMesh, SmoothFillsAddRecordsAtTheEndAndAreFaultsUnlessAskedFor) {
-  const pcl::PCLPointCloud2 bowl = some(ellipsoid(1500), 500, 1000);
-  const Positions points = positionsOf<float>(bowl);
-  Settings settings;
-  settings.options.surface = spherical_param::SurfaceMode::Open;
-  const Outcome open = meshed(bowl, settings);
-  EXPECT_FALSE(open.has_faults);
-  expectCoresMesh<float>(open, points, settings);
-  settings.options.surface = spherical_param::SurfaceMode::Closed;
-  settings.options.fill = spherical_param::FillMode::Smooth;
-  const Outcome filled = meshed(bowl, settings);
-  EXPECT_FALSE(filled.has_faults);
-  expectCoresMesh<float>(filled, points, settings);
-  Settings sphere;
-  sphere.options.topology = spherical_param::TopologyMode::Sphere;
-  sphere.options.fill = spherical_param::FillMode::Smooth;
-  EXPECT_TRUE(meshed(bowl, sphere).has_faults);
-  const Mesh& mesh = *filled.mesh;
-  ASSERT_GT(mesh.vertices.size(), 1000U);
-  EXPECT_EQ(mesh.colors.size(), mesh.vertices.size());
-  EXPECT_EQ(some(mesh.cloud, 0, 1000).data, bowl.data);
-  std::set<Record> others;  // what the records of the bowl have besides coordinates
-  const auto other_fields = [](const pcl::PCLPointCloud2& cloud, std::size_t i) {
-    const Record whole = record(cloud, i);
-    return Record(whole.begin() + 12, whole.end());
-  };
-  for (std::size_t i = 0; i < 1000; ++i)
-    others.insert(other_fields(bowl, i));
-  for (std::size_t i = 1000; i < mesh.vertices.size(); ++i)
-    EXPECT_EQ(others.count(other_fields(mesh.cloud, i)), 1U);
 }
 
 // The sensor is at the origin.
@@ -270,10 +194,8 @@ TEST(RosCloudMesh, SurfacesFaceTheSensorOrAsTheNormalsOfThePointsDo) {
       cloud.fields.push_back(test::field("normal_y", 16));
     }
     const Outcome outcome = meshed(cloud);
-    Eigen::Matrix3d corners;
-    for (int k = 0; k < 3; ++k)
-      corners.col(k) = Eigen::Vector3d(
-          outcome.mesh->vertices[outcome.mesh->triangles[0][static_cast<std::size_t>(k)]].data());
+    const Eigen::Matrix3d corners =
+        outcome.mesh->vertices(Eigen::all, outcome.mesh->triangles.col(0));
     EXPECT_EQ(corners.determinant() > 0.0, has_normals);
   }
 }

@@ -20,57 +20,51 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
   const auto& rows = spherical_param::optionTable();
   ASSERT_EQ(parameters().size(), rows.size() + 4);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const ParameterInfo& info = parameters()[i];
-    EXPECT_EQ(info.name, rows[i].name);
+    const Parameter& parameter = parameters()[i];
+    EXPECT_EQ(parameter.name, rows[i].name);
     // A parameter has one type: numbers beside names are texts, and any text may be given.
     const bool is_mixed = rows[i].is_point || (rows[i].is_number && !rows[i].choices.empty());
-    EXPECT_EQ(info.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
-    EXPECT_EQ(info.min, is_mixed ? 0.0 : rows[i].optional ? kUnset : rows[i].min) << info.name;
-    EXPECT_EQ(info.max, is_mixed ? 0.0 : rows[i].max) << info.name;
-    EXPECT_NE(info.description.find(rangeOf(rows[i])), std::string::npos) << info.description;
+    EXPECT_EQ(parameter.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
+    EXPECT_EQ(parameter.min, is_mixed           ? 0.0
+                             : rows[i].optional ? kUnset
+                                                : rows[i].min)
+        << parameter.name;
+    EXPECT_EQ(parameter.max, is_mixed ? 0.0 : rows[i].max) << parameter.name;
+    EXPECT_NE(parameter.description.find(rangeOf(rows[i])), std::string::npos)
+        << parameter.description;
     // No value in its range means that it is not set.
-    EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << info.name;
+    EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << parameter.name;
   }
 }
 
-TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  const Values own = {{"outliers", std::string("topology")},
-                      {"max_points", std::int64_t{5000000}},
-                      {"queue_depth", std::int64_t{1}},
-                      {"cancel_running", true},
-                      {"max_cancellations", std::int64_t{3}}};
-  for (const auto& [name, value] : own)
-    EXPECT_EQ(parameterOf({}, name), value) << name;
-  Settings settings;
-  for (const ParameterInfo& info : parameters()) {
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
-    setParameter(settings, info.name, info.default_value);
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
-  }
-}
-
-TEST(RosParameters, EachChangesWhatItNamesOnly) {
-  Values values = {{"outliers", std::string("4.25")},
-                   {"max_points", std::int64_t{1000}},
-                   {"queue_depth", std::int64_t{4}},
-                   {"cancel_running", false},
-                   {"max_cancellations", std::int64_t{9}}};
+TEST(RosParameters, DefaultsAreThoseOfThePageAndEachChangesWhatItNamesOnly) {
+  struct Case {
+    std::string name;
+    Value usual;
+    Value other;
+  };
+  std::vector<Case> cases = {{"outliers", std::string("topology"), std::string("4.25")},
+                             {"max_points", std::int64_t{5000000}, std::int64_t{1000}},
+                             {"queue_depth", std::int64_t{1}, std::int64_t{4}},
+                             {"cancel_running", true, false},
+                             {"max_cancellations", std::int64_t{3}, std::int64_t{9}}};
   for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
+    const Value usual = parameterOf({}, row.name);
+    Value other = (row.min + row.max) / 2.0;
     if (!row.choices.empty())
-      values.emplace_back(row.name, parameterOf({}, row.name) == Value(row.choices.back())
-                                        ? row.choices.front()
-                                        : row.choices.back());
+      other = usual == Value(row.choices.back()) ? row.choices.front() : row.choices.back();
     else if (row.is_integer)
-      values.emplace_back(row.name, static_cast<std::int64_t>(row.min) + 7);
-    else
-      values.emplace_back(row.name, (row.min + row.max) / 2.0);
+      other = static_cast<std::int64_t>(row.min) + 7;
+    cases.push_back({row.name, usual, other});
   }
-  for (const auto& [name, value] : values) {
+  for (const auto& [name, usual, other] : cases) {
     Settings settings;
-    setParameter(settings, name, value);
-    for (const ParameterInfo& info : parameters())
-      EXPECT_EQ(parameterOf(settings, info.name), info.name == name ? value : info.default_value)
-          << name << ", " << info.name;
+    EXPECT_EQ(parameterOf(settings, name), usual) << name;
+    setParameter(settings, name, other);
+    for (const Parameter& parameter : parameters())
+      EXPECT_EQ(parameterOf(settings, parameter.name),
+                parameter.name == name ? other : parameter.default_value)
+          << name << ", " << parameter.name;
   }
 }
 

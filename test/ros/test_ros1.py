@@ -4,7 +4,7 @@
     test_ros1.py [Ros1.test_name...]
 
 The environment must have the package: setup.bash of its install space, which is that of the first
-example of doc/guide.md, below HOME. Which mesh a cloud has is tested elsewhere.
+example of doc/guide.md, below HOME. The meshes themselves are tested elsewhere.
 """
 
 import contextlib
@@ -45,7 +45,7 @@ from visualization_msgs.msg import Marker  # noqa: E402
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"), ("rgba", "<u4")])
 # The commands of doc/guide.md, from tools/test_ros.sh.
 DEPTH_CAMERA, RVIZ, SCANNER = (os.environ[name] for name in ("DEPTH_CAMERA", "RVIZ", "SCANNER"))
-TIMEOUT = 120  # of whatever should take seconds at most [s]
+TIMEOUT = 120  # of steps that should take seconds [s]
 # A reconstruction that would take weeks.
 ENDLESS = ("_method:=paper", "_max_iterations:=2000000000", "_tolerance:=0.0")
 processes = []
@@ -98,23 +98,13 @@ def message_of(points, number=0):
                        row_step=POINT.itemsize * len(points), data=points.tobytes())
 
 
-# Centre and half axes of what the camera sees in front of a wall [m].
-OBJECTS = (((0.0, 0.0, 0.8), (0.15, 0.12, 0.12)), ((0.3, 0.05, 0.9), (0.06, 0.06, 0.06)))
-
-
 def seen_by_a_camera():
-    """The cloud of a depth image: organized, in the camera's frame, with a wall at 2 m and pixels that saw nothing."""
-    v, u = np.mgrid[-59.5:60.0, -79.5:80.0] / 140.0
-    rays = np.stack([u, v, np.ones_like(u)], axis=-1)
-    depth = np.full(u.shape, 2.0)
-    for center, axes in OBJECTS:
-        ray, start = rays / axes, np.array(center) / axes
-        a, b, c = (ray**2).sum(-1), ray @ start, start @ start - 1.0
-        with np.errstate(invalid="ignore"):
-            depth = np.fmin(depth, (b - np.sqrt(b**2 - a * c)) / a)
+    """The cloud of a depth image: organized, in the camera's frame, a bowl before a wall, and pixels that saw nothing."""
+    y, x = np.mgrid[-59.5:60.0, -79.5:80.0] / 140.0
+    depth = np.where(x**2 + y**2 < 0.04, 0.8 - x**2 - y**2, 2.0)
     depth[::17, ::13] = np.nan
     points = np.zeros((*depth.shape, 4), "<f4")
-    points[..., :3] = rays * depth[..., None]
+    points[..., :3] = np.stack([x, y, np.ones_like(x)], axis=-1) * depth[..., None]
     fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate(("x", "y", "z", "rgb"))]
     return PointCloud2(header=Header(frame_id="camera_depth_optical_frame"), fields=fields, height=len(points),
                        width=points.shape[1], point_step=16, row_step=points[0].nbytes, data=points.tobytes())
@@ -157,11 +147,6 @@ class Watch:
     def wait_until(self, expected):
         wait_for(lambda: expected.items() <= self.diagnosis().items(), expected)
 
-    def idle(self, received):
-        """Waits until so many clouds arrived and nothing is left to do; the counts of all."""
-        self.wait_until({"received clouds": str(received), "waiting clouds": "0", "state": "idle"})
-        return {key[:-7]: int(value) for key, value in self.diagnosis().items() if key.endswith(" clouds")}
-
 
 class Ros1(unittest.TestCase):
     def setUp(self):
@@ -184,15 +169,17 @@ class Ros1(unittest.TestCase):
         return rospy.ServiceProxy(f"{name}/reconstruct", Reconstruct, persistent=True)
 
     def call_service(self, callers, watch):
-        """Calls it from so many threads, once the first works."""
+        """Calls it from several threads, one after the other. Returns the list that receives the answers."""
+        answers = []
 
         def call(reconstruct):
             with contextlib.suppress(rospy.ServiceException):  # the node ended
-                reconstruct(message_of(bumpy(3000)))
+                answers.append(reconstruct(message_of(bumpy(3000))))
 
         for _ in range(callers):
             threading.Thread(target=call, args=(self.service(),), daemon=True).start()
             watch.wait_until({"state": "working"})
+        return answers
 
     def run_example(self, example, **options):
         return start("bash", "-eo", "pipefail", "-c", example, **options)
@@ -203,30 +190,19 @@ class Ros1(unittest.TestCase):
         wait_for(lambda: publisher.get_num_connections() == 1, f"a subscriber of {name}")
         return publisher
 
-    def test_service_answers_good_and_bad_clouds_in_flat_memory(self):
-        # Each thread that answers requests would have an arena of its own, and these fill up one by one. After
-        # large blocks the allocator would keep some MB at the end of the heap.
-        env = dict(os.environ, MALLOC_ARENA_MAX="1", MALLOC_TRIM_THRESHOLD_="131072")
-        node = self.run_node(env=env)
-        reconstruct, memory = self.service(), []
-        for turn in range(5):
-            size = 0
-            for number, count in enumerate((4, 20000, 5, 100, 1000, 9000, 300, 5000)):
-                points = bumpy(count, 1000 * turn + number)
-                cloud = message_of(points, number)
-                answer = reconstruct(cloud)
-                self.assertTrue(answer.success, answer.message)
-                assert_mesh(self, answer.mesh, cloud, points)
-                size += 2 * len(cloud.data) + 12 * len(answer.mesh.polygons)
-            for cloud, cause in ((PointCloud2(), "empty"), (message_of(bumpy(3)), "4 distinct")):
-                answer = reconstruct(cloud)
-                self.assertFalse(answer.success or answer.mesh.polygons or answer.mesh.cloud.data)
-                self.assertRegex(answer.message, f"{cause}.*; ")
-            with open(f"/proc/{node.pid}/statm", encoding="ascii") as file:
-                memory.append(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
-        # The first two turns are the warm-up. Had each cloud of the others left itself and its mesh
-        # behind, it would be three times that size.
-        self.assertLess(memory[-1] - memory[1], size)
+    def test_service_answers_good_and_bad_clouds(self):
+        self.run_node()
+        reconstruct = self.service()
+        for number, count in enumerate((4, 20000, 100)):
+            points = bumpy(count, number)
+            cloud = message_of(points, number)
+            answer = reconstruct(cloud)
+            self.assertTrue(answer.success, answer.message)
+            assert_mesh(self, answer.mesh, cloud, points)
+        for cloud, cause in ((PointCloud2(), "empty"), (message_of(bumpy(3)), "4 distinct")):
+            answer = reconstruct(cloud)
+            self.assertFalse(answer.success or answer.mesh.polygons or answer.mesh.cloud.data)
+            self.assertRegex(answer.message, f"{cause}.*; ")
 
     def test_topic_always_meshes_the_last(self):
         self.run_node()
@@ -237,11 +213,9 @@ class Ros1(unittest.TestCase):
             cloud = message_of(points, number)
             publisher.publish(message_of(bumpy(3)) if number == 7 else cloud)
             time.sleep(0.01)
-        counts = watch.idle(40)
-        self.assertGreater(counts["dropped"] + counts["cancelled"], 0)
-        self.assertEqual(counts["received"], sum(counts[how] for how in ("done", "failed", "dropped", "cancelled")))
-        wait_for(lambda: len(watch.all["mesh"]) == counts["done"], "all meshes")
+        wait_for(lambda: watch.one("mesh").header.stamp == cloud.header.stamp, "the last mesh")
         stamps = [mesh.header.stamp for mesh in watch.all["mesh"]]
+        self.assertLess(len(stamps), 39)  # one cannot be meshed, and others come too fast
         self.assertEqual(stamps, sorted(stamps))
         assert_mesh(self, watch.one("mesh"), cloud, points)
 
@@ -301,17 +275,15 @@ class Ros1(unittest.TestCase):
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         self.run_node("_topology:=sphere")
         watch, reconstruct, good = Watch(self), self.service(), bumpy(2000)
-        for number, (cloud, level, summary, result) in enumerate((
+        for cloud, level, summary, result in (
                 (message_of(good), 0, "idle", "done"),
                 (message_of(good[good["z"] < 0.2]), 1, "the last mesh has faults", "done"),
-                (message_of(bumpy(3)), 1, "could not be meshed", "failed")), 1):
+                (message_of(bumpy(3)), 1, "the last cloud could not be meshed", "failed")):
             answer = reconstruct(cloud)
-            counts, found = watch.idle(number), watch.diagnosis()
-            self.assertEqual([found[key] for key in ("level", "last result", "last message", "last cloud [points]")],
-                             [level, result, answer.message, str(cloud.width)])
-            self.assertIn(summary, found["summary"])
-            self.assertGreater(float(found["last time [s]"]), 0.0)
-        self.assertEqual((counts["done"], counts["failed"], counts["dropped"]), (2, 1, 0))
+            watch.wait_until({"level": level, "summary": summary, "state": "idle", "waiting clouds": "0",
+                              "last result": result, "last message": answer.message,
+                              "last cloud [points]": str(cloud.width)})
+            self.assertGreater(float(watch.diagnosis()["last time [s]"]), 0.0)
 
     def test_launch_file_starts_node_and_nodelet_with_parameters(self):
         parameters = {"surface": "open", "queue_depth": 4}
@@ -354,19 +326,12 @@ class Ros1(unittest.TestCase):
                            "offsets": [field.offset for field in mesh.cloud.fields[:3]]})
         points = np.frombuffer(mesh.cloud.data, layout)
         points = np.stack([points[axis] for axis in "xyz"], axis=1)
-        # The larger object alone, thinned out: a point of each cube of 1 cm is at most 2 cm off it.
-        center, axes = OBJECTS[0]
-        self.assertLess(np.abs(np.linalg.norm((points - center) / axes, axis=1) - 1.0).max() * min(axes), 0.02)
+        # The bowl alone, about one point of each cube of 1 cm. What the camera does not see stays open.
+        self.assertLess(points[:, 2].max(), 1.0)
         self.assertTrue(400 < len(points) < 1500, len(points))
-        # What the camera does not see stays open.
-        triangles = np.array([polygon.vertices for polygon in mesh.polygons])
-        self.assertEqual(set(triangles.ravel().tolist()), set(range(len(points))))
-        self.assertLess(len(triangles), 2 * len(points) - 4)
+        self.assertLess(len(mesh.polygons), 2 * len(points) - 4)
         self.assertEqual(watch.one("marker").header.frame_id, mesh.header.frame_id)
-        wait_for(lambda: watch.diagnosis().get("last result") == "done", "diagnostics")
-        found = watch.diagnosis()
-        self.assertEqual((found["level"], found["last parts"]), (0, "1"), found)
-        self.assertGreater(int(found["last other parts [points]"]), 50)  # the smaller object
+        watch.wait_until({"level": 0, "last result": "done"})
 
         screen = start("Xvfb", "-displayfd", "1", "-screen", "0", "800x600x24", stdout=subprocess.PIPE, text=True)
         self.run_example(RVIZ, env=dict(os.environ, DISPLAY=":" + screen.stdout.readline().strip()))
@@ -383,7 +348,8 @@ class Ros1(unittest.TestCase):
 
     def test_parameters_of_the_depth_camera_arrive_and_are_those_of_the_page(self):
         def parameters(*words):
-            command = ["roslaunch", "--dump-params", "pcl_spherical_param", "depth_camera.launch", *words]
+            command = ["roslaunch", "--dump-params", "pcl_spherical_param", "reconstruction.launch",
+                       "camera:=true", *words]
             return yaml.safe_load(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
         text = (ROOT / "src/ros/ros1/config/depth_camera.yaml").read_text()
@@ -407,10 +373,13 @@ class Ros1(unittest.TestCase):
                 process, watch = run(*ENDLESS), Watch(self)
                 if callers == 0:
                     self.publisher().publish(message_of(bumpy(3000)))
-                self.call_service(callers, watch)
+                answers = self.call_service(callers, watch)
                 watch.wait_until({"state": "working"})
                 if callers == 20:  # one is worked on, and eight wait
-                    watch.wait_until({"refused requests": "11", "waiting clouds": "8"})
+                    watch.wait_until({"waiting clouds": "8"})
+                    wait_for(lambda: len(answers) == 11, "refusals")
+                    self.assertEqual({answer.message for answer in answers},
+                                     {"too many requests wait; ask again later"})
                 process.send_signal(signal.SIGINT)
                 self.assertEqual(process.wait(TIMEOUT), 0)
 

@@ -100,18 +100,12 @@ junit_number() { # <attribute> <file>
   echo "${number:-0}"
 }
 
-# The files of the project that match a pattern, with or without git.
+# The files of the project that match a pattern.
 files() {
-  if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
-    git ls-files -co --exclude-standard -- "$@" | while read -r file; do
-      [ ! -e "$file" ] || printf '%s\n' "$file"
-    done
-  else
-    local pattern
-    for pattern in "$@"; do
-      find . -path './build*' -prune -o -type f -path "./$pattern" -print | sed 's|^\./||'
-    done
-  fi | sort -u
+  local pattern
+  for pattern in "$@"; do
+    find . -path './build*' -prune -o -type f -path "./$pattern" -print
+  done
 }
 
 # configure_release <ON or OFF> <option>...: with the flags of the packages, so that these are what is

@@ -106,7 +106,7 @@ def _of_fields(name: str, value: NDArray[Any]) -> Cloud:
 
 
 def _cloud(name: str, points: Any, normals: Any, colors: Any) -> Cloud:
-    """Without rows of normals or colours there are none."""
+    """A cloud of arrays; normals and colours may be None or empty."""
     array = arguments.positions(name, points)
     directions = None if normals is None or len(normals) == 0 else np.asarray(normals)
     shades = None if colors is None or len(colors) == 0 else np.asarray(colors)[:, :3]

@@ -7,7 +7,6 @@ from typing import Any, Literal, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
 
-from . import _arguments as arguments
 from . import _clouds, _core
 from ._arguments import IndexArray
 from ._clouds import CloudLike
@@ -57,9 +56,8 @@ def find_outliers(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values: dict[str, object] = {"outliers": sigma, "threads": arguments.thread_count(threads)}
         try:
-            indices = _core.find_outliers(cloud.points, values, progress=listener)
+            indices = _core.find_outliers(cloud.points, {"outliers": sigma, "threads": threads}, progress=listener)
         except InvalidInput as error:  # which names the option of reconstruct()
             raise InvalidInput(str(error).replace("outliers", "sigma", 1)) from None
     inliers = np.ones(len(cloud.points), dtype=np.bool_)
@@ -97,6 +95,6 @@ def find_parts(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values: dict[str, object] = {"min_points": min_points, "threads": arguments.thread_count(threads)}
+        values = {"min_points": min_points, "threads": threads}
         parts: tuple[IndexArray, ...] = _core.find_parts(cloud.points, values, progress=listener)
     return parts

@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, Optional, Union
-
-import numpy as np
+from typing import Callable, Iterator, Optional, Union
 
 from ._errors import InvalidInput
 
@@ -18,72 +16,45 @@ Progress = Union[bool, ProgressFunction, None]
 
 
 class _Bar:
-    """A bar for each stage, by tqdm if it is installed, else in plain text."""
+    """A bar for each stage, on the standard error."""
 
     def __init__(self) -> None:
         self._stage = ""
-        self._bar: Any = None
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            self._make: Any = _PlainBar
-        else:
-            self._make = tqdm
 
     def __call__(self, stage: str, fraction: float) -> None:
         if stage != self._stage:
             self.close()
-            self._bar = self._make(desc=stage, total=100, bar_format="{desc:<13} {percentage:3.0f} % |{bar}| {elapsed}")
             self._stage = stage
-        self._bar.update(int(100 * fraction) - self._bar.n)
-
-    def close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-
-class _PlainBar:
-    """What _Bar needs of tqdm."""
-
-    def __init__(self, desc: str, total: int, bar_format: str) -> None:
-        self._desc = desc
-        self.n = 0
-        self._draw()
-
-    def update(self, steps: int) -> None:
-        self.n += steps
+            self._drawn = 0.0
+        self._percent = int(100 * fraction)
         if time.monotonic() > self._drawn + 0.1:
             self._draw()
 
     def close(self) -> None:
-        self._draw()
-        print(file=sys.stderr, flush=True)
+        if self._stage:
+            self._draw()
+            print(file=sys.stderr, flush=True)
 
     def _draw(self) -> None:
         self._drawn = time.monotonic()
-        bar = ("#" * (self.n // 4)).ljust(25)
-        print(f"\r{self._desc:<13} {self.n:3} % |{bar}|", end="", file=sys.stderr, flush=True)
+        bar = ("#" * (self._percent // 4)).ljust(25)
+        print(f"\r{self._stage:<13} {self._percent:3} % |{bar}|", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
 def listening(progress: Progress) -> Iterator[Optional[ProgressFunction]]:
-    """What the core may call: it ends its work for False alone."""
-    if progress is None or progress is False:
-        yield None
-        return
+    """The function that the core calls."""
     if progress is True:
         bar = _Bar()
         try:
             yield bar
         finally:
             bar.close()
-        return
-    if not callable(progress):
-        raise InvalidInput(f"progress = {progress!r} cannot be called; give True or a function of (stage, fraction)")
-    listener = progress
-
-    def report(stage: str, fraction: float) -> bool:
-        answer = listener(stage, fraction)
-        return not (isinstance(answer, (bool, np.bool_)) and not answer)
-
-    yield report
+    elif progress is None or progress is False:
+        yield None
+    elif callable(progress):
+        yield progress
+    else:
+        raise InvalidInput(
+            f"progress = {progress!r} cannot be called; give True or a function of (stage, fraction)"
+        )

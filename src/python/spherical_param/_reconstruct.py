@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Sequence  # noqa: F401
-from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union  # noqa: F401
+from typing import Any, Optional, Union
 
 from . import _arguments as arguments
-from . import _core, _options
+from . import _core
 from ._clouds import CloudLike, read
 from ._progress import Progress, listening
 from ._results import Result, Results, make_results
@@ -38,7 +37,19 @@ def reconstruct(
         of which are not used. Colours and normals come along. At least 4 distinct finite points
         that are not all in one plane.
         Points with a coordinate that is not finite (or masked) are left out and listed.
-OPTIONS
+    OPTIONS
+    columns : names, default None
+        What the columns of a text file are, from the first on, e.g. "x,y,z,-,red,green,blue"; "-"
+        is left out. None: what the file says, or looks like.
+    details : bool, default False
+        Fill ``Result.sphere`` also where the mesh is made without it, ``Result.vertex_residuals``
+        and ``Diagnosis.triangle_marks``.
+    progress : True, or callable(stage, fraction), default None
+        True: a bar on the standard error. A function is called from the calling thread during the
+        work. ``stage`` is "read", "view", "neighbors", "graph", "outliers", "parts",
+        "consolidation", "openings", "embedding", "triangulation", "optimization", "smoothing",
+        "cleaning", "fill" or "quality"; ``fraction``, in [0, 1], is that of the stage's current
+        loop. If it returns False, the work ends with Cancelled; if it raises, with that exception.
 
     Returns
     -------
@@ -77,10 +88,9 @@ OPTIONS
                 f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, columns, details or progress"
             )
     has_details = arguments.truth("details", details)
-    values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
         cloud = read("points", points, listener, columns)
-        fields = _core.reconstruct(cloud.points, values, info=cloud.info, details=has_details, progress=listener)
+        fields = _core.reconstruct(cloud.points, options, info=cloud.info, details=has_details, progress=listener)
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)
     results = make_results(fields, cloud, options)
@@ -88,22 +98,14 @@ OPTIONS
 
 
 def _describe() -> None:
-    """Give reconstruct() the signature and documentation of all options."""
-    kinds = globals()
-    keywords = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=eval(kind, kinds))
-        for name, kind, default, *_ in _options.keywords(_TABLE)
-    ]
+    """Put the options of the table into the signature and the documentation of reconstruct()."""
     signature = inspect.signature(reconstruct)
-    parameters = [signature.parameters["points"].replace(annotation=CloudLike)] + keywords
-    reconstruct.__signature__ = signature.replace(  # type: ignore[attr-defined]
-        parameters=parameters, return_annotation=Union[Result, Results]
-    )
-    reconstruct.__annotations__ = {each.name: each.annotation for each in parameters}
-    reconstruct.__annotations__["return"] = Union[Result, Results]
-    text = reconstruct.__doc__
-    if text:  # not with python -OO
-        reconstruct.__doc__ = text.replace("OPTIONS", _options.documentation(_TABLE))
+    points, *others = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
+    options = [inspect.Parameter(row["name"], inspect.Parameter.KEYWORD_ONLY, default=row["default"]) for row in _TABLE]
+    reconstruct.__signature__ = signature.replace(parameters=[points, *options, *others])
+    rows = [f"{row['name']} : {row['range']}, default {row['default']!r}\n        {row['help']}" for row in _TABLE]
+    if reconstruct.__doc__:  # not with python -OO
+        reconstruct.__doc__ = reconstruct.__doc__.replace("OPTIONS", "\n    ".join(rows))
 
 
 _describe()

@@ -15,12 +15,11 @@ from zlib import crc32
 
 import numpy as np
 
-from . import _arguments as arguments
 from . import _core
 from ._arguments import ByteArray, FloatArray, IndexArray
 from ._clouds import Cloud
 from ._errors import InvalidInput
-from ._figures import Finding, LeftOut, Surface, View, attributes, make
+from ._figures import Finding, LeftOut, Surface, View
 from ._files import MeshExport, vertex_normals
 from ._progress import Progress, listening
 
@@ -137,14 +136,13 @@ class Result(Surface, OfCloud):
                 "this package was built without the page; install three.js (libjs-three) and build it again"
             )
         source = self._source
-        if crc32(source.cloud.points) != source.checksum:
+        if crc32(source.cloud.points.data) != source.checksum:
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
-        threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
             _core.write_report(
-                os.fsencode(path), source.cloud.points, source.cloud.colors,
-                {**source.options, "threads": threads}, info=source.cloud.info, part=source.part,
-                input=source.cloud.name or "points", command=source.command, progress=listener,
+                os.fsencode(path), source.cloud.points, source.cloud.colors, source.options,
+                info=source.cloud.info, part=source.part, input=source.cloud.name or "points",
+                command=source.command, progress=listener,
             )
 
     def _repr_html_(self) -> Optional[str]:
@@ -171,8 +169,9 @@ class Result(Surface, OfCloud):
         )
 
 
-if Result.__doc__:  # not with python -OO
-    Result.__doc__ = f"{inspect.cleandoc(Result.__doc__)}\n\n{attributes('Surface')}"
+if Result.__doc__ and Surface.__doc__:  # not with python -OO
+    attributes = inspect.cleandoc(Surface.__doc__).partition("\n\n")[2]
+    Result.__doc__ = f"{inspect.cleandoc(Result.__doc__)}\n\n{attributes}"
 
 
 class Results(tuple[Result, ...], OfCloud):
@@ -213,31 +212,14 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     ``vertex_of_input`` of a surface is about its own points, that of a result about the whole
     cloud.
     """
-    left_out = LeftOut(**fields["left_out"])
-    view = None if fields["view"] is None else View(**fields["view"])
-    checksum = crc32(cloud.points)
+    checksum = crc32(cloud.points.data)
     results = []
-    for part, surface in enumerate(fields["surfaces"]):
+    for part, surface in enumerate(fields.pop("surfaces")):
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
         vertex_of_input[surface["inputs"]] = surface["vertex_of_input"]
-        figures = make("Surface", surface)
-        figures["vertex_of_input"] = vertex_of_input
-        results.append(
-            Result(
-                **figures, view=view, left_out=left_out, stages=fields["stages"],
-                _source=Source(cloud, options, part, checksum),
-            )
-        )
-    all_results = Results(results)
-    all_results.verdict = fields["verdict"]
-    all_results.findings = tuple(Finding(**make("Finding", each)) for each in fields["findings"])
-    all_results.failures = fields["failures"]
-    all_results.view = view
-    all_results.left_out = left_out
-    all_results.stages = fields["stages"]
-    all_results.vertices = fields["mesh"]["vertices"]
-    all_results.triangles = fields["mesh"]["triangles"]
-    all_results.input_of_vertex = fields["mesh"]["input_of_vertex"]
-    all_results._is_added = fields["mesh"]["is_added"]
-    all_results._source = results[0]._source
-    return all_results
+        surface["vertex_of_input"] = vertex_of_input
+        common = {name: fields[name] for name in ("view", "left_out", "stages")}
+        results.append(Result(**surface, **common, _source=Source(cloud, options, part, checksum)))
+    whole = Results(results)
+    vars(whole).update(fields, _source=results[0]._source)
+    return whole

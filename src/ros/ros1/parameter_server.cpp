@@ -2,6 +2,8 @@
 
 #include "spherical_param/errors.h"
 
+#include <dynamic_reconfigure/config_tools.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -11,6 +13,7 @@ namespace spherical_param_ros {
 namespace {
 
 using dynamic_reconfigure::Config;
+using dynamic_reconfigure::ConfigTools;
 
 /// Integers of ROS 1 have 32 bits.
 int narrowed(std::int64_t value) {
@@ -18,22 +21,15 @@ int narrowed(std::int64_t value) {
                                                    std::numeric_limits<int>::max()));
 }
 
-template <typename Entries, typename EntryValue>
-void append(Entries& entries, const std::string& name, const EntryValue& value) {
-  entries.emplace_back();
-  entries.back().name = name;
-  entries.back().value = value;
-}
-
 void append(Config& config, const std::string& name, const Value& value) {
   if (const auto* truth = std::get_if<bool>(&value))
-    append(config.bools, name, static_cast<std::uint8_t>(*truth));
+    ConfigTools::appendParameter(config, name, *truth);
   else if (const auto* integer = std::get_if<std::int64_t>(&value))
-    append(config.ints, name, narrowed(*integer));
+    ConfigTools::appendParameter(config, name, narrowed(*integer));
   else if (const auto* number = std::get_if<double>(&value))
-    append(config.doubles, name, *number);
+    ConfigTools::appendParameter(config, name, *number);
   else
-    append(config.strs, name, std::get<std::string>(value));
+    ConfigTools::appendParameter(config, name, std::get<std::string>(value));
 }
 
 /// Calls for the name and the value of each entry.
@@ -50,12 +46,12 @@ void forEach(const Config& config, const Use& use) {
 }
 
 /// A limit of a parameter, in its type.
-Value limitOf(const ParameterInfo& info, double limit, bool is_max) {
-  if (std::holds_alternative<bool>(info.default_value))
+Value limitOf(const Parameter& parameter, double limit, bool is_max) {
+  if (std::holds_alternative<bool>(parameter.default_value))
     return is_max;
-  if (std::holds_alternative<std::int64_t>(info.default_value))
+  if (std::holds_alternative<std::int64_t>(parameter.default_value))
     return static_cast<std::int64_t>(limit);
-  if (std::holds_alternative<double>(info.default_value))
+  if (std::holds_alternative<double>(parameter.default_value))
     return limit;
   return std::string();
 }
@@ -66,9 +62,9 @@ const char* typeOf(const Value& value) {
 }
 
 /// The choices of a parameter as rqt_reconfigure reads them; empty if it has none.
-std::string editMethodOf(const ParameterInfo& info) {
+std::string editMethodOf(const Parameter& parameter) {
   std::string list;
-  for (const std::string& choice : info.choices)
+  for (const std::string& choice : parameter.choices)
     list += (list.empty() ? "" : ", ") + ("{'name': '" + choice + "', 'value': '" + choice) +
             "', 'type': 'str', 'description': ''}";
   return list.empty() ? "" : "{'enum_description': 'names', 'enum': [" + list + "]}";
@@ -78,24 +74,24 @@ dynamic_reconfigure::ConfigDescription description() {
   dynamic_reconfigure::ConfigDescription all;
   all.groups.resize(1);
   all.groups[0].name = "Default";
-  for (const ParameterInfo& info : parameters()) {
+  for (const Parameter& parameter : parameters()) {
     dynamic_reconfigure::ParamDescription one;
-    one.name = info.name;
-    one.type = typeOf(info.default_value);
-    one.description = info.description;
-    one.edit_method = editMethodOf(info);
+    one.name = parameter.name;
+    one.type = typeOf(parameter.default_value);
+    one.description = parameter.description;
+    one.edit_method = editMethodOf(parameter);
     all.groups[0].parameters.push_back(one);
-    append(all.dflt, info.name, info.default_value);
-    append(all.min, info.name, limitOf(info, info.min, false));
-    append(all.max, info.name, limitOf(info, info.max, true));
+    append(all.dflt, parameter.name, parameter.default_value);
+    append(all.min, parameter.name, limitOf(parameter, parameter.min, false));
+    append(all.max, parameter.name, limitOf(parameter, parameter.max, true));
   }
   return all;
 }
 
 Config configOf(const Settings& settings) {
   Config config;
-  for (const ParameterInfo& info : parameters())
-    append(config, info.name, parameterOf(settings, info.name));
+  for (const Parameter& parameter : parameters())
+    append(config, parameter.name, parameter.get(settings));
   config.groups.resize(1);
   config.groups[0].name = "Default";
   config.groups[0].state = 1;
@@ -106,26 +102,27 @@ Config configOf(const Settings& settings) {
 
 Settings readSettings(const ros::NodeHandle& node) {
   Settings settings;
-  for (const ParameterInfo& info : parameters()) {
+  for (const Parameter& parameter : parameters()) {
     XmlRpc::XmlRpcValue value;
-    if (!node.getParam(info.name, value))
+    if (!node.getParam(parameter.name, value))
       continue;
     switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
-      setParameter(settings, info.name, static_cast<bool>(value));
+      parameter.set(settings, static_cast<bool>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeInt:
-      setParameter(settings, info.name, std::int64_t{static_cast<int>(value)});
+      parameter.set(settings, std::int64_t{static_cast<int>(value)});
       break;
     case XmlRpc::XmlRpcValue::TypeDouble:
-      setParameter(settings, info.name, static_cast<double>(value));
+      parameter.set(settings, static_cast<double>(value));
       break;
     case XmlRpc::XmlRpcValue::TypeString:
-      setParameter(settings, info.name, static_cast<std::string>(value));
+      parameter.set(settings, static_cast<std::string>(value));
       break;
     default:
-      throw spherical_param::InvalidInput(info.name + " is a list or a structure; use a value " +
-                                          "such as " + textOf(info.default_value));
+      throw spherical_param::InvalidInput(parameter.name +
+                                          " is a list or a structure; use a value " + "such as " +
+                                          textOf(parameter.default_value));
     }
   }
   return settings;

@@ -17,13 +17,11 @@ namespace spherical_param_ros {
 /// \throw spherical_param::InvalidInput for one that cannot be used.
 Settings readSettings(const ros::NodeHandle& node);
 
-/// Lets clients of dynamic_reconfigure, such as rqt_reconfigure, change the parameters. Its own
-/// server wants them listed at compile time; this one serves parameters().
+/// Lets clients of dynamic_reconfigure, such as rqt_reconfigure, change the parameters. The server
+/// of dynamic_reconfigure itself needs a list at compile time; this one serves parameters().
 class ParameterServer {
 public:
-  /// \param node     whose parameters they are.
-  /// \param settings in force.
-  /// \param apply    called with new settings, from the queue of `node`.
+  /// \param apply called with new settings, from the queue of `node`.
   ParameterServer(const ros::NodeHandle& node, const Settings& settings,
                   std::function<void(const Settings&)> apply);
 

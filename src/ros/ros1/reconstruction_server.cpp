@@ -13,8 +13,8 @@
 namespace spherical_param_ros {
 namespace {
 
-/// The shutdown of older roscpp first waits for the services that are being called: without this
-/// question the process would not end before its mesh is done.
+/// Older versions of roscpp wait for running service calls when they shut down. So the work on a
+/// cloud ends when the shutdown begins.
 Outcome meshUnlessShuttingDown(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                                const std::function<bool()>& is_wanted) {
   return meshCloud(cloud, settings, [&] { return is_wanted() && !ros::isShuttingDown(); });
@@ -34,9 +34,11 @@ ReconstructionServer::ReconstructionServer(const ros::NodeHandle& node,
   worker_ = std::make_unique<ReconstructionWorker>(settings, meshUnlessShuttingDown);
 
   diagnostics_.setHardwareID("none");
-  diagnostics_.add("reconstruction", this, &ReconstructionServer::diagnose);
+  diagnostics_.add("reconstruction", this, &ReconstructionServer::onDiagnostics);
+  // The updater itself waits in ROS's time, which may be simulated, and stand still.
   timer_ = private_node_.createWallTimer(
-      ros::WallDuration(0.2), [this](const ros::WallTimerEvent&) { updateDiagnostics(); });
+      ros::WallDuration(diagnostics_.getPeriod()),
+      [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
 
   parameter_server_ = std::make_unique<ParameterServer>(
       private_node_, settings, [this](const Settings& changed) { worker_->setSettings(changed); });
@@ -50,13 +52,13 @@ ReconstructionServer::ReconstructionServer(const ros::NodeHandle& node,
       static_cast<std::uint32_t>(ReconstructionWorker::max_requests + 2);
   request_spinner_ = std::make_unique<ros::AsyncSpinner>(request_threads, &request_queue_);
   request_spinner_->start();
-  // The worker's queue is the one that drops, and counts: this one is emptied at once, and long
-  // enough for when the processors are busy.
+  // The worker's queue is the one that drops clouds: this one is emptied at once, and long enough
+  // for when the processors are busy.
   subscriber_ = private_node_.subscribe("cloud", 100, &ReconstructionServer::onCloud, this);
 }
 
 ReconstructionServer::~ReconstructionServer() {
-  // A request that is being worked on ends with the worker, and only then the spinner can.
+  // The worker answers all requests when it stops, so that the threads of the spinner can end.
   worker_->stop();
   subscriber_.shutdown();
   timer_.stop();
@@ -65,11 +67,9 @@ ReconstructionServer::~ReconstructionServer() {
 }
 
 void ReconstructionServer::onCloud(const sensor_msgs::PointCloud2ConstPtr& message) {
-  const bool in_time = worker_->submit(
-      neutralCloud(*message),
-      [this, header = message->header](const Outcome& outcome) { publish(outcome, header); });
-  if (!in_time)
-    ROS_DEBUG_STREAM_THROTTLE_NAMED(5.0, name_, "Clouds come faster than they can be meshed.");
+  worker_->submit(neutralCloud(*message), [this, header = message->header](const Outcome& outcome) {
+    publish(outcome, header);
+  });
 }
 
 bool ReconstructionServer::onRequest(Request& request, Response& response) {
@@ -80,7 +80,7 @@ bool ReconstructionServer::onRequest(Request& request, Response& response) {
     response.mesh = polygonMeshOf<pcl_msgs::PolygonMesh>(*outcome.mesh, request.cloud.header);
   else
     ROS_WARN_STREAM_NAMED(name_, "A request cannot be answered with a mesh: " << outcome.message);
-  // false would keep the message from the caller.
+  // With false the caller would not receive the message.
   return true;
 }
 
@@ -89,6 +89,8 @@ void ReconstructionServer::publish(const Outcome& outcome, const std_msgs::Heade
     ROS_WARN_STREAM_NAMED(name_, "A cloud of " << outcome.points << " points in frame '"
                                                << header.frame_id
                                                << "' cannot be meshed: " << outcome.message);
+  if (outcome.status == Status::Dropped)
+    ROS_DEBUG_STREAM_THROTTLE_NAMED(5.0, name_, "A cloud was dropped: " << outcome.message);
   if (!outcome.mesh)
     return;
   for (const std::string& warning : outcome.warnings)
@@ -103,20 +105,8 @@ void ReconstructionServer::publish(const Outcome& outcome, const std_msgs::Heade
   send(marker_publisher_, markerOf<visualization_msgs::Marker>(mesh, header));
 }
 
-void ReconstructionServer::updateDiagnostics() {
-  // The updater's own period is one of ROS's time, which may be simulated, and stand still.
-  const auto now = std::chrono::steady_clock::now();
-  if (now < next_diagnosis_)
-    return;
-  diagnostics_.force_update();
-  next_diagnosis_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                              std::chrono::duration<double>(diagnostics_.getPeriod()));
-}
-
-void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const Statistics statistics = worker_->statistics();
-  diagnosis_.tell(statistics, status);
-  status.add("refused requests", statistics.refused);
+void ReconstructionServer::onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  diagnose(worker_->state(), status);
 }
 
 }  // namespace spherical_param_ros

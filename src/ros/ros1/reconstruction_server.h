@@ -10,7 +10,6 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <std_msgs/Header.h>
 
-#include <chrono>
 #include <memory>
 #include <string>
 
@@ -34,8 +33,7 @@ private:
   void onCloud(const sensor_msgs::PointCloud2ConstPtr& message);
   bool onRequest(Request& request, Response& response);
   void publish(const Outcome& outcome, const std_msgs::Header& header);
-  void updateDiagnostics();
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   ros::NodeHandle private_node_;
   std::string name_;
@@ -45,11 +43,9 @@ private:
   /// Ends before the publishers.
   std::unique_ptr<ReconstructionWorker> worker_;
   diagnostic_updater::Updater diagnostics_;
-  Diagnosis diagnosis_;
   std::unique_ptr<ParameterServer> parameter_server_;
   ros::Subscriber subscriber_;
   ros::WallTimer timer_;
-  std::chrono::steady_clock::time_point next_diagnosis_;
   // Requests wait for their mesh: in threads of their own, so that nothing else waits for them.
   ros::CallbackQueue request_queue_;
   ros::ServiceServer service_;

@@ -1,10 +1,10 @@
-# Node and nodelet of ROS 1. The build tools want a package of catkin's also where its packages are
-# too few for the nodes.
+# Node and nodelet of ROS 1. The build tools expect a catkin package even if the packages that the
+# nodes need are missing.
 find_package(catkin QUIET)
 if(NOT catkin_FOUND)
   return()
 endif()
-# CMake and pkg-config packages are those of cmake/Install.cmake.
+# cmake/Install.cmake makes the CMake and pkg-config packages.
 if(NOT SPHERICAL_PARAM_BUILD_ROS_NODES)
   catkin_package(SKIP_CMAKE_CONFIG_GENERATION SKIP_PKG_CONFIG_GENERATION)
   return()

@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_param");
-  // Without one left, ROS would shut down before the last message.
+  // ROS shuts down with its last handle. This one lives until the last message is sent.
   const ros::NodeHandle node;
   try {
     const spherical_param_ros::ReconstructionServer server(node, ros::NodeHandle("~"),

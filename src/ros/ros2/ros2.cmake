@@ -1,4 +1,4 @@
-# The node of ROS 2. Packages of ROS 2 are found by this mark, also where the node is not built.
+# The node of ROS 2. ROS 2 finds the package by this file, which is installed without the node, too.
 file(WRITE ${PROJECT_BINARY_DIR}/package/ament_index "")
 install(FILES ${PROJECT_BINARY_DIR}/package/ament_index
   DESTINATION ${CMAKE_INSTALL_DATADIR}/ament_index/resource_index/packages
@@ -11,7 +11,7 @@ add_executable(spherical_param_node src/ros/ros2/spherical_param_node.cpp)
 target_include_directories(spherical_param_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(spherical_param_node PRIVATE spherical_param_ros)
 foreach(package IN LISTS ros2_packages)
-  # Again: what cmake/Ros.cmake found is known to its function alone.
+  # Again: what cmake/Ros.cmake found ended with its function.
   find_package(${package} REQUIRED)
   target_link_libraries(spherical_param_node PRIVATE ${${package}_TARGETS})
   if(NOT ${package}_TARGETS)

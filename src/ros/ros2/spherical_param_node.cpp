@@ -43,9 +43,9 @@ Value neutralValue(const std::string& name, const rclcpp::ParameterValue& value)
 
 /// Its description has the range, too: not every range of ours is one of ROS. setParameter() checks
 /// the type: an integer will do for a number, and a number for the text of `outliers`.
-rcl_interfaces::msg::ParameterDescriptor descriptorOf(const ParameterInfo& info) {
+rcl_interfaces::msg::ParameterDescriptor descriptorOf(const Parameter& parameter) {
   rcl_interfaces::msg::ParameterDescriptor descriptor;
-  descriptor.description = info.description;
+  descriptor.description = parameter.description;
   descriptor.dynamic_typing = true;
   return descriptor;
 }
@@ -55,12 +55,12 @@ public:
   /// \throw spherical_param::InvalidInput for a parameter that cannot be used.
   ReconstructionNode() : rclcpp::Node("spherical_param"), diagnostics_(this) {
     Settings settings;
-    for (const ParameterInfo& info : parameters()) {
+    for (const Parameter& parameter : parameters()) {
       const auto value = std::visit([](const auto& known) { return rclcpp::ParameterValue(known); },
-                                    info.default_value);
-      setParameter(
-          settings, info.name,
-          neutralValue(info.name, declare_parameter(info.name, value, descriptorOf(info))));
+                                    parameter.default_value);
+      parameter.set(settings,
+                    neutralValue(parameter.name, declare_parameter(parameter.name, value,
+                                                                   descriptorOf(parameter))));
     }
     // As latched topics of ROS 1: RViz shows the last mesh also if it is started later.
     const auto last_one = rclcpp::QoS(1).transient_local();
@@ -71,7 +71,7 @@ public:
     parameter_callback_ = add_on_set_parameters_callback(
         [this](const std::vector<rclcpp::Parameter>& changed) { return onParameters(changed); });
     diagnostics_.setHardwareID("none");
-    diagnostics_.add("reconstruction", this, &ReconstructionNode::diagnose);
+    diagnostics_.add("reconstruction", this, &ReconstructionNode::onDiagnostics);
     subscription_ = create_subscription<sensor_msgs::msg::PointCloud2>(
         "~/cloud", rclcpp::SensorDataQoS(),
         [this](const sensor_msgs::msg::PointCloud2::ConstSharedPtr message) { onCloud(*message); });
@@ -95,24 +95,17 @@ private:
     result.successful = true;
     Settings settings = worker_->settings();
     try {
-      for (const rclcpp::Parameter& parameter : changed)
-        if (isOurs(parameter.get_name()))
-          setParameter(settings, parameter.get_name(),
-                       neutralValue(parameter.get_name(), parameter.get_parameter_value()));
+      for (const rclcpp::Parameter& change : changed)
+        // Others, such as use_sim_time, are ROS's own.
+        for (const Parameter& parameter : parameters())
+          if (parameter.name == change.get_name())
+            parameter.set(settings, neutralValue(parameter.name, change.get_parameter_value()));
       worker_->setSettings(settings);
     } catch (const spherical_param::InvalidInput& error) {
       result.successful = false;
       result.reason = error.what();
     }
     return result;
-  }
-
-  /// Others, such as use_sim_time, are ROS's own.
-  static bool isOurs(const std::string& name) {
-    for (const ParameterInfo& info : parameters())
-      if (info.name == name)
-        return true;
-    return false;
   }
 
   void publish(const Outcome& outcome, const Header& header) {
@@ -126,8 +119,8 @@ private:
     marker_publisher_->publish(markerOf<visualization_msgs::msg::Marker>(*outcome.mesh, header));
   }
 
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-    diagnosis_.tell(worker_->statistics(), status);
+  void onDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
+    diagnose(worker_->state(), status);
   }
 
   rclcpp::Publisher<pcl_msgs::msg::PolygonMesh>::SharedPtr mesh_publisher_;
@@ -135,7 +128,6 @@ private:
   rclcpp::Publisher<visualization_msgs::msg::Marker>::SharedPtr marker_publisher_;
   std::unique_ptr<ReconstructionWorker> worker_;
   diagnostic_updater::Updater diagnostics_;
-  Diagnosis diagnosis_;
   rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr parameter_callback_;
   rclcpp::Subscription<sensor_msgs::msg::PointCloud2>::SharedPtr subscription_;
 };
