@@ -21,12 +21,12 @@ bool isDegenerate(const Eigen::Matrix<Index, 3, 1>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// What is found at some of the vertices, or of the triangles.
+/// What is found at some of the vertices.
 struct Findings {
   std::size_t vertices = 0;
   std::size_t edges = 0;
   std::size_t nonmanifold_edges = 0;                 ///< edges with more than two triangles
-  std::size_t misoriented_edges = 0;                 ///< edges that both triangles traverse alike
+  std::size_t misoriented_edges = 0;                 ///< edges that two triangles run along alike
   std::vector<std::array<Index, 2>> boundary_edges;  ///< edges with one triangle
   std::vector<Index> nonmanifold_vertices;
   std::vector<Index> unused_vertices;
@@ -36,12 +36,12 @@ struct Findings {
     edges += more.edges;
     nonmanifold_edges += more.nonmanifold_edges;
     misoriented_edges += more.misoriented_edges;
-    boundary_edges.insert(boundary_edges.end(), more.boundary_edges.begin(),
-                          more.boundary_edges.end());
-    nonmanifold_vertices.insert(nonmanifold_vertices.end(), more.nonmanifold_vertices.begin(),
-                                more.nonmanifold_vertices.end());
-    unused_vertices.insert(unused_vertices.end(), more.unused_vertices.begin(),
-                           more.unused_vertices.end());
+    const auto append = [](const auto& from, auto& to) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(more.boundary_edges, boundary_edges);
+    append(more.nonmanifold_vertices, nonmanifold_vertices);
+    append(more.unused_vertices, unused_vertices);
   }
 };
 
@@ -91,8 +91,8 @@ void examineSides(const Triangles& triangles, const CornerTable& corners, Index 
     findings.nonmanifold_vertices.push_back(v);
 }
 
-/// Whether the triangles around a vertex are one closed fan, as nearly all are: those of a
-/// manifold. False, too, if there are more than a quick look is worth.
+/// Whether the triangles around a vertex are one closed fan, as in a closed manifold. Also false if
+/// there are too many triangles for this quick test.
 bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v) {
   constexpr std::size_t most = 32;
   const std::size_t count = corners.countAt(v);
@@ -106,9 +106,10 @@ bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v
     is_sound = is_sound && !isDegenerate(triangles.col(t));
     *side++ = {triangles(internal::nextCorner(k), t), triangles(internal::previousCorner(k), t)};
   });
-  // Each side is continued by one that was not reached before, and the last one by the first.
+  // Each side ends where another one begins that was not reached before; the last ends at the
+  // first.
   for (side = sides.begin(); is_sound && side != end; ++side) {
-    auto next = end;  // the first one: not by a search, whose end nothing predicts
+    auto next = end;  // found without a branch, which would be mispredicted
     for (auto other = end; other != sides.begin();) {
       --other;
       next = (*other)[0] == (*side)[1] ? other : next;
@@ -137,7 +138,7 @@ void examineVertex(const Triangles& triangles, const CornerTable& corners, Index
   });
 }
 
-/// Number of connected components of some edges.
+/// Number of connected components of a set of edges.
 std::size_t countComponents(const std::vector<std::array<Index, 2>>& edges, std::size_t vertices) {
   if (edges.empty())
     return 0;
