@@ -118,7 +118,7 @@ private:
   /// instead of 0.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
-    if (openings->isRim(v, w))
+    if (openings->isBoundary(v, w))
       return 0.0;
     const double price = (0.8 + 2.0 * mu) * (p - q).norm();
     return are_both_open ? 0.5 * price : price;
