@@ -14,8 +14,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
-/// turning, scaling or renumbering the points changes them only where rounding decides.
+/// Numbers that look random, but depend only on the lengths of the edges of each node: moving,
+/// turning, scaling or renumbering the points changes them only by rounding.
 Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
   Indexed<double> keys(graph.size());
   forEachIndex(graph.size(), threads, {}, [&](Index i) {
@@ -23,24 +23,22 @@ Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int thread
     keys[i] = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   });
   const double sum = std::accumulate(keys.begin(), keys.end(), 0.0);
-  // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
-  // it elsewhere. More turns would look more random, but let the rounding of the points decide more
-  // often.
+  // About one turn over the spread of the lengths; each seed begins it elsewhere. With more turns,
+  // the rounding of the points would decide more often.
   constexpr double turns = 2.0;
   constexpr double golden_ratio = 0.6180339887498949;
   const double factor = turns * static_cast<double>(graph.size()) / sum;
   for (double& key : keys) {
     const double turn = factor * key + golden_ratio * seed;
-    // A length that is NaN gives a key that is NaN, which no comparison orders.
+    // NaN, from lengths that are not finite, cannot be sorted.
     key = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
   }
   return keys;
 }
 
-/// A maximal independent set, in ascending order: the one that takes each node in turn, by
-/// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
-/// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
-/// the same set whatever the order and the threads.
+/// A maximal independent set, in ascending order: takes each node by ascending key, unless a
+/// neighbour was taken before it. A node can be judged as soon as its neighbours of lower keys are.
+/// So each round leaves fewer nodes, and the set does not depend on the threads.
 Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
                               const FractionReport& report) {
   const std::size_t n = graph.size();
@@ -92,7 +90,7 @@ struct Aggregates {
   Indexed<double> distances;  ///< n entries, length of the path to the own seed
 
   /// Gives a node the seed of a neighbour if the path through it is shorter; ties go to the lower
-  /// seed. \return whether it is
+  /// seed. \return whether the node has changed
   bool join(Index node, const Aggregates& of, Index neighbor, double length) {
     const double distance = of.distances[neighbor] + length;
     const Index seed = of.of_node[neighbor];
@@ -104,8 +102,8 @@ struct Aggregates {
   }
 };
 
-/// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
-/// and then all nodes have been looked at, only few change, and those next to them.
+/// Shortest paths from all seeds at once. First come the neighbours of seeds, then all nodes, in
+/// parallel. No node is far from a seed, so few change after that.
 Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int threads,
                          const FractionReport& report) {
   const std::size_t n = graph.size();
@@ -159,8 +157,8 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
             continue;
           if (shortest[other] == infinity)
             touched.push_back(other);
-          // The sum of the distances first: the same bits from both sides of the edge. It stays a
-          // length where it is beyond the range of double.
+          // The distances are added first: the sum has the same bits from both sides of the edge.
+          // It stays finite.
           const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
           shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
         }
@@ -174,7 +172,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
   });
 }
 
-/// Adds an entry to a row that is sorted by seed; of two with the same seed the shorter path stays.
+/// Adds an entry to a row that is sorted by seed; of two paths to a seed the shorter one stays.
 void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double length) {
   auto place = row.end();
   while (place != row.begin() && (place - 1)->first > seed)
@@ -230,8 +228,8 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
     const int threads = threadCount(execution.threads, finest->size());
     const Indexed<Index> seeds = independentSet(*finest, seed, threads, report);
-    // Fewer than 4 nodes cannot be spread over a sphere. Levels that keep more than half could be
-    // as many as a hub has neighbours.
+    // Fewer than 4 nodes cannot be spread over a sphere. If levels kept more than half of the
+    // nodes, a hub could have as many levels as neighbours.
     if (seeds.size() < 4 || 2 * seeds.size() > finest->size())
       break;
     const Aggregates cells = geodesicCells(*finest, seeds, threads, report);
