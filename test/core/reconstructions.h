@@ -131,7 +131,7 @@ inline void expectGuarantees(const Positions& points, const Surface& result) {
 }
 
 /// A surface in one piece over all vertices, without intersections, of a genus and with a number of
-/// openings, the longest first, whose loops are those of an independent walk.
+/// openings, the longest first, whose loops are those of boundaryOf().
 inline void expectSound(const Surface& result, Index genus, std::size_t openings) {
   EXPECT_TRUE(result.topology.isSurface());
   EXPECT_EQ(result.topology.genus, genus);
