@@ -14,13 +14,10 @@
 namespace spherical_param::internal {
 namespace {
 
-// The experiments are on 14 models, each as it is, as a random quarter, with noise of a quarter of
-// an edge and sampled at random, without and with 1 % of points anywhere in its box; and on scans.
-
-/// A piece of fewer points is a stray cluster. The base of one model is a piece of 55.
+/// A piece of fewer points is a stray cluster.
 constexpr std::size_t kMinSurface = 32;
 
-/// Mean length of the edges at a node that has some.
+/// Mean length of the edges of a node, which must have some.
 double spacingAt(const Graph& graph, Index i) {
   const Row<double> lengths = graph.lengthsOf(i);
   return std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
@@ -28,7 +25,7 @@ double spacingAt(const Graph& graph, Index i) {
 
 /// Root mean square distance of a node and those around it from their plane.
 double roughnessAt(const Positions& points, const Graph& graph, Index i) {
-  // Minimum number of points of a surface that show its roughness.
+  // Fewer points do not show the roughness of a surface.
   constexpr std::size_t min_patch = 12;
   std::vector<Index> patch{i};
   for (std::size_t done = 0; done < patch.size() && patch.size() < min_patch;)
@@ -72,7 +69,7 @@ public:
     return pair.from == i ? pair.to : pair.from;
   }
 
-  /// Distance of a point to the surface in mean lengths of edges there; 0 for those on it or beside
+  /// Distance of a point from the surface [mean length of edges there]; 0 on the surface and beside
   /// it, where noise may explain the distance.
   double ofStray(Index i) const {
     if (is_beside_[i] != 0)
@@ -80,9 +77,7 @@ public:
     const Index j = nearest(i);
     const double distance = edgeLength(points_, i, j);
     const double spacing = spacingAt(agreed_, j);
-    // A point may be noise if it is within a spacing, and this number of times the roughness, of
-    // the surface. The noisy models lose no point; of 3,181 stray points that are farther than a
-    // spacing 58 are missed, with 8 93, and 171 with 2.5 spacings whatever the roughness.
+    // Noise is within a spacing plus this number of times the roughness of the surface.
     constexpr double max_roughnesses = 6.0;
     const double noise = spacing + max_roughnesses * roughnessAt(points_, agreed_, j);
     return distance > noise ? distance / spacing : 0.0;
@@ -98,17 +93,17 @@ private:
   const Graph& agreed_;
   const Stars& stars_;
   ComponentTree tree_;
-  Indexed<char> is_beside_;  ///< not 0 for points on a surface, too
+  Indexed<char> is_beside_;  ///< 1: on a surface, or in a star of one of its points
 };
 
-/// Whether an edge has triangles on both sides: its ends have two neighbours in common.
+/// Whether an edge has triangles on both sides: its ends have at least two common neighbours.
 bool isInSheet(const Graph& graph, Index i, Index j) {
   const Row<Index> row = graph.row(i);
   return std::count_if(row.begin(), row.end(), [&](Index k) { return graph.row(j).contains(k); }) >=
          2;
 }
 
-/// Marks the pieces of which kMinSurface points are joined by edges with triangles on both sides.
+/// Marks the pieces in which edges with triangles on both sides join at least kMinSurface points.
 void markSheets(const Graph& agreed, const Partition& pieces, Indexed<char>& is_surface) {
   UnionFind joined(agreed.size());
   for (const Index i : agreed.nodes()) {
@@ -125,11 +120,11 @@ void markSheets(const Graph& agreed, const Partition& pieces, Indexed<char>& is_
       is_surface[pieces.of[i]] = 1;
 }
 
-/// Marks the other large pieces that are no coarser than the surface beside them.
+/// Marks the other large pieces that are not coarser than the surface beside them.
 void markFinePieces(const SurfaceDistance& distance, const Partition& pieces,
                     Indexed<char>& is_surface) {
-  // A piece that is coarser than the surface beside it by this factor, and holds no sheet, is a net
-  // of stray points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
+  // A piece without a sheet that is coarser than the surface by this factor is a net of stray
+  // points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
   constexpr double max_coarseness = 5.0;
   Indexed<std::vector<double>> coarseness(pieces.of.size());
   for (const Index i : indicesOf(pieces.of))
@@ -140,10 +135,11 @@ void markFinePieces(const SurfaceDistance& distance, const Partition& pieces,
       is_surface[k] = 1;
 }
 
-/// Joins small components to the nearest large one beside them: a base, the tip of an ear.
+/// Joins small components to the nearest large one beside them, such as a base or the tip of an
+/// ear.
 void joinSmall(const Positions& points, const Graph& agreed, UnionFind& components) {
-  // Small is up to this fraction of the large one's points, beside is up to this number of spacings
-  // of the coarser one.
+  // Small: up to this fraction of the points of the large one. Beside: within this number of
+  // spacings of the coarser one.
   constexpr double max_fraction = 0.05;
   constexpr double max_gap = 4.0;
   const Partition parts(components);
@@ -154,7 +150,7 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
   std::vector<Bridge> bridges = shortestBridges(points, all, 1);
   std::stable_sort(bridges.begin(), bridges.end(),
                    [](const Bridge& a, const Bridge& b) { return a.length < b.length; });
-  // Each joins one: two large ones beside a small one stay apart.
+  // Each small one is joined once, so that two large ones beside it stay apart.
   Indexed<char> is_joined(agreed.size(), 0);
   for (const Bridge& bridge : bridges) {
     const auto [small, large] = std::minmax(parts.of[bridge.from], parts.of[bridge.to],
@@ -171,11 +167,10 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
 
 }  // namespace
 
-Graph joinedAlongRims(const Positions& points, Graph agreed, const Stars& stars) {
-  // A rim of a sheet of n points has about the root of n, as near to each other as those across. So
-  // it is 0.96 to 1 times as far from one to the next on contours and turned parts; stray points in
-  // an object, whose stars reach it, are 2.2 times as far from each other, and nets of such points,
-  // and the base of a model with fewer points, 4.4 to 22 times.
+Graph joinedAlongBoundaries(const Positions& points, Graph agreed, const Stars& stars) {
+  // Points of a boundary are as near to each other as those across: 0.96 to 1 times on contours and
+  // turned parts. Stray points in an object, whose stars reach it, are 2.2 to 22 times as far
+  // apart.
   constexpr double max_coarseness = 1.5;
   UnionFind components = connectedComponents(agreed);
   const auto [component, sizes] = Partition(components);
@@ -183,26 +178,28 @@ Graph joinedAlongRims(const Positions& points, Graph agreed, const Stars& stars)
     const Row<double> lengths = agreed.lengthsOf(i);
     return *std::min_element(lengths.begin(), lengths.end());
   };
-  struct Rim {
+  struct Boundary {
     std::size_t points = 0;
     std::vector<Bridge> edges;
     std::vector<double> coarseness;
   };
-  std::map<std::pair<Index, Index>, Rim> rims;  // of one component, beside another
+  std::map<std::pair<Index, Index>, Boundary> boundaries;  // of one component, beside another
   for (const Index i : agreed.nodes())
     for (const Index j : stars.of(i)) {
       if (component[i] == component[j] ||
           std::min(sizes[component[i]], sizes[component[j]]) < kMinSurface)
         continue;
-      Rim& rim = rims[{component[i], component[j]}];
-      rim.points += rim.edges.empty() || rim.edges.back().from != i ? 1 : 0;
-      rim.edges.push_back({i, j, edgeLength(points, i, j)});
-      rim.coarseness.push_back(shortest(i) / shortest(j));
+      Boundary& boundary = boundaries[{component[i], component[j]}];
+      boundary.points += boundary.edges.empty() || boundary.edges.back().from != i ? 1 : 0;
+      boundary.edges.push_back({i, j, edgeLength(points, i, j)});
+      boundary.coarseness.push_back(shortest(i) / shortest(j));
     }
   std::vector<Bridge> edges;
-  for (auto& [pair, rim] : rims)
-    if (rim.points * rim.points >= sizes[pair.first] && medianOf(rim.coarseness) <= max_coarseness)
-      edges.insert(edges.end(), rim.edges.begin(), rim.edges.end());
+  for (auto& [pair, boundary] : boundaries)
+    // The boundary of a sheet of n points has about the root of n.
+    if (boundary.points * boundary.points >= sizes[pair.first] &&
+        medianOf(boundary.coarseness) <= max_coarseness)
+      edges.insert(edges.end(), boundary.edges.begin(), boundary.edges.end());
   if (!edges.empty())
     agreed = withEdges(agreed, edges);
   return agreed;

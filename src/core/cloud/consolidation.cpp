@@ -22,31 +22,25 @@ namespace spherical_param {
 namespace internal {
 namespace {
 
-// The experiments are on 14 models and 4 shapes, of each eight merged depth images with noise and
-// registration errors ("scans"), on six smooth shapes with noise of .25 to 4 spacings ("noise") and
-// on a jug with a handle scanned from all sides with noise of .5 to 3 spacings ("jug"). RMS
-// distances and errors of normals are ratios of geometric means.
-
-/// Standard deviation of the weights [radius of the neighbourhood], in trials without the point
-/// itself, and for the fit with it, which needs fewer others. With .55 normals of noise are 9 %
-/// better, but those of scans 7 % worse, and RMS distances of the jug 9 %.
+/// Standard deviation of the weights [radius of the neighbourhood]: in trials without the point
+/// itself, and in fits with it, which need fewer others. Larger ones smooth noise better, but lose
+/// detail.
 constexpr double kTrialWidth = 0.5;
 constexpr double kWidth = 0.45;
-/// Roundness of a flat neighbourhood. With .5 normals of the jug are 15 % worse, and of noise of
-/// one spacing 66 %.
+/// Maximum roundness of a flat neighbourhood.
 constexpr double kMaxRoundness = 0.4;
-/// Neighbours in the smallest neighbourhood.
-constexpr Index kLeastSize = 10;
-/// Neighbours of a probe, with itself, that decide together.
+/// Number of neighbours in the smallest neighbourhood.
+constexpr Index kMinSize = 10;
+/// Number of probes around one, with itself, that decide together.
 constexpr int kJury = 12;
-/// Fewer points have no noise to speak of.
+/// Fewer points are not consolidated.
 constexpr std::size_t kMinPoints = 20;
 
 /// A quadric of least squares through neighbours, with Gaussian weights.
 class SurfaceFit {
 public:
   /// \param point    where the weights are greatest.
-  /// \param left_out no neighbour is, or -1.
+  /// \param left_out a neighbour that is left out, or -1.
   /// \param width    standard deviation of the weights.
   void compute(const Positions& points, const Row<Index>& neighbors, const Eigen::Vector3d& point,
                Index left_out, double width) {
@@ -69,12 +63,12 @@ public:
     quadric_.fit(offsets_, weights_);
   }
 
-  /// From the quadric to the point, along the normal; 0 without enough neighbours.
+  /// The vector from the quadric to the point, along the normal; 0 without enough neighbours.
   Eigen::Vector3d offset() const { return height() * quadric_.normal(); }
   double height() const { return quadric_.height() * width_; }
   /// Root mean square distance of the neighbours from the quadric.
   double noise() const { return quadric_.residual() * width_; }
-  /// 0 if they are in a plane, 1 if all directions are alike.
+  /// 0 if the neighbours are in a plane, 1 if all directions are alike.
   double roundness() const { return quadric_.roundness(); }
 
 private:
@@ -96,15 +90,15 @@ std::vector<Index> orderOf(const Indexed<double>& values) {
 struct MovedPoints {
   std::vector<Index> from;  ///< their numbers before, ascending
   Positions points;
-  Indexed<double> distances;  ///< below which others are not told apart from each
+  Indexed<double> distances;  ///< noise does not separate nearer points from each
   Indexed<double> noise;      ///< RMS distance of the points around each from the surface
 };
 
-/// A noisy cloud, and the neighbourhoods in which its surface shows. Their size is chosen at
-/// probes, of which there are fewer where neighbourhoods are large.
+/// A noisy cloud, and the neighbourhoods that show its surface. Their size is chosen at probes;
+/// where neighbourhoods are large, there are fewer probes.
 class NoisyCloud {
 public:
-  /// \param quiet  execution of searches, which report nothing.
+  /// \param quiet  execution of searches, without reports.
   /// \param report receives fractions of the work.
   NoisyCloud(const Positions& points, const Execution& quiet, FractionReport report)
       : points_(points), report_(std::move(report)), execution_(quiet),
@@ -115,9 +109,9 @@ public:
     chooseSizes();
   }
 
-  /// Moves as many points to the surface as it has detail.
+  /// Moves points to the surface: as many as the noise leaves detail.
   MovedPoints onSurface() const {
-    // A point in this many neighbours. With half as many, normals of the scans are 3 % worse.
+    // One point is moved for this number of neighbours in a neighbourhood.
     constexpr Index neighbors_of_point = 80;
     const std::vector<Index> probe_of =
         findNearest(points_(Eigen::all, pointsOf(probes_)), points_, execution_);
@@ -145,24 +139,22 @@ public:
           const Eigen::Vector3d from = points_.col(i);
           double radius = probe.radius;
           fit.compute(points_, around, from, -1, kWidth * radius);
-          // The probe may be beside a limb or a sheet, which is thinner.
+          // A limb or sheet beside the probe may be thinner.
           for (Index size = probe.size / 2; size >= probe.flat && fit.roundness() > kMaxRoundness;
                size /= 2) {
             radius = std::min(radius, radiusAt(i, around, size));
             fit.compute(points_, around, from, -1, kWidth * radius);
           }
           Eigen::Vector3d to = from;
-          // The second fit is where the first has moved the point. With one, normals of the scans
-          // are 3 % worse, with three the same.
+          // The second fit is at the place to which the first has moved the point.
           for (int k = 0; k < 2; ++k) {
             fit.compute(points_, around, to, -1, kWidth * radius);
             to -= fit.offset();
           }
-          // Where the surface is farther than the neighbourhood, there is none.
+          // There is no surface if it is farther than the radius of the neighbourhood.
           moved.points.col(item) = (to - from).norm() <= radius ? to : from;
           moved.noise[item] = fit.noise();
-          // Without, the meshes are as good, but have triangles far below what the noise tells.
-          constexpr double max_distance = 0.3;
+          constexpr double max_distance = 0.3;  // [standard deviation of the weights]
           moved.distances[item] = std::min(fit.noise(), max_distance * kWidth * radius);
         });
     return moved;
@@ -172,10 +164,10 @@ private:
   /// A point at which neighbourhoods of several sizes are tried.
   struct Probe {
     Index point;
-    Index flat;              ///< neighbours in the smallest neighbourhood that is flat
-    double roundness = 1.0;  ///< of that one
-    Index size = 0;          ///< neighbours in the one that predicts best
-    double radius = 0.0;     ///< of the one that predicts best, averaged
+    Index flat;              ///< number of neighbours in the smallest flat neighbourhood
+    double roundness = 1.0;  ///< of that neighbourhood
+    Index size = 0;          ///< number of neighbours in the neighbourhood that predicts best
+    double radius = 0.0;     ///< of that neighbourhood, averaged
   };
 
   /// Items of one size of neighbourhoods, and their points.
@@ -193,8 +185,8 @@ private:
 
   /// Calls work(fit, item, point, neighbours) for all items, block by block, since lists are long.
   ///
-  /// \param factor of a size: the number of neighbours that are searched.
-  /// \param done   fraction of the work that is done before it.
+  /// \param factor number of neighbours to search for [size].
+  /// \param done   fraction of the work that is done before.
   template <typename Work>
   void forEachNeighborhood(const std::map<Index, Rows>& rows_of_size, Index factor, double done,
                            const Work& work) const {
@@ -215,18 +207,19 @@ private:
     }
   }
 
-  /// The distance of the neighbour with which a neighbourhood ends.
+  /// The distance of the last neighbour in a neighbourhood.
   double radiusAt(Index point, const Row<Index>& around, Index size) const {
     const auto last = std::min(static_cast<std::size_t>(size), around.size() - 1);
     return (points_.col(*(around.begin() + last)) - points_.col(point)).norm();
   }
 
-  /// The probes around each, the nearest first.
+  /// The probes around each, nearest first.
   NeighborLists juryOf(const Indexed<Probe>& probes) const {
     return findNearestNeighbors(points_(Eigen::all, pointsOf(probes)), kJury, execution_);
   }
 
-  /// Every so many in this order are a sample that does not depend on the place of the cloud.
+  /// Ranks the points by the distances of their neighbours. Points at even steps of this order are
+  /// a sample that does not depend on the place of the cloud.
   void rankPoints() {
     constexpr int neighbors = 4;
     const NeighborLists lists = search_(firstIndices(columnCount(points_)), neighbors);
@@ -241,21 +234,20 @@ private:
       rank_[i] = rank++;
   }
 
-  /// Finds the smallest flat neighbourhoods, from small ones to large ones: where noise is above
-  /// the spacing, small ones are as thick as they are wide.
+  /// Finds the smallest flat neighbourhoods: where noise exceeds the spacing, small ones are as
+  /// thick as they are wide.
   void findProbes() {
-    // Of the points, in the largest neighbourhood.
-    constexpr Index min_parts = 20;
-    // Searches for more take too long.
+    // The largest neighbourhood has this fraction of the points, and this number.
+    constexpr double max_fraction = 0.05;
     constexpr Index max_size = 640;
     constexpr Index first_step = 4;
     const auto n = static_cast<Index>(points_.cols());
     Indexed<Probe> open;
     for (const Index i : indicesOf(rank_))
       if (rank_[i] % first_step == 0)
-        open.push_back({i, kLeastSize});
+        open.push_back({i, kMinSize});
     Index step = first_step;
-    for (Index size = kLeastSize; !open.empty(); size *= 2) {
+    for (Index size = kMinSize; !open.empty(); size *= 2) {
       step *= 2;
       Indexed<double> roundness(open.size());
       const std::vector<Index> points = pointsOf(open);
@@ -271,14 +263,14 @@ private:
         std::vector<double> values;
         for (const Index j : listOf(juries, q))
           values.push_back(roundness[j]);
-        // Thin limbs are round at any size, and the least so at the least.
+        // Thin limbs are round at any size, and least at the smallest.
         const double median = medianOf(values);
         Probe& probe = open[q];
         if (median < probe.roundness) {
           probe.roundness = median;
           probe.flat = size;
         }
-        if (median <= kMaxRoundness || 2 * min_parts * size >= n || size == max_size)
+        if (median <= kMaxRoundness || 2.0 * size >= max_fraction * n || size == max_size)
           probes_.push_back(probe);
         else if (rank_[probe.point] % step == 0)
           rest.push_back(probe);
@@ -292,11 +284,9 @@ private:
   /// Chooses the neighbourhoods that predict points best by the others: leave-one-out
   /// cross-validation.
   void chooseSizes() {
-    // Times the smallest flat one: 1, 2, 4, 8. Without the largest, normals of noise are 20 to 30 %
-    // worse.
+    // Sizes of 1, 2, 4 and 8 times the smallest flat one.
     constexpr Index trials = 4;
-    // The largest neighbourhood with an error of up to this times the least is taken. With 1,
-    // normals of the jug are 7 % worse, with 1.05 its handle is lost.
+    // The largest neighbourhood with up to this error is taken [smallest error].
     constexpr double max_error = 1.03;
     using Trials = std::array<double, trials>;
     Indexed<Trials> errors(probes_.size());
@@ -332,7 +322,7 @@ private:
           radius[p] = radii[p][t];
         }
     }
-    // The surface is as smooth as the radii are. Without, normals of the scans are 5 % worse.
+    // The surface is only as smooth as the radii are.
     constexpr std::size_t averaged = 6;
     for (int round = 0; round < 2; ++round) {
       for (const Index p : indicesOf(probes_)) {
@@ -356,20 +346,19 @@ private:
   Indexed<Probe> probes_;  ///< in the order of the points
 };
 
-/// The points, and of each node the one that it is part of.
+/// The consolidated points, and the one that each node is merged into.
 struct ConsolidatedNodes {
-  /// Each node is a point of its own.
+  /// Each node is its own point.
   explicit ConsolidatedNodes(const Positions& nodes)
-      : points(nodes), point_of_node(static_cast<std::size_t>(nodes.cols())) {
-    std::iota(point_of_node.begin(), point_of_node.end(), Index{0});
-  }
+      : points(nodes), point_of_node(firstIndices(columnCount(nodes))) {}
 
   Positions points;
   Indexed<Index> point_of_node;
   double noise = 0.0;
 };
 
-/// Of points that are closer than a distance, the one with the least distance, ascending.
+/// Merges points within the distance of another one, which stays: small distances first. Returns
+/// the points that stay, ascending.
 std::vector<Index> thinned(const Positions& points, const Indexed<double>& distances,
                            const Execution& execution) {
   constexpr int max_merged = 60;
@@ -391,20 +380,20 @@ std::vector<Index> thinned(const Positions& points, const Indexed<double>& dista
 ConsolidatedNodes consolidated(const Positions& nodes, const Execution& execution) {
   ConsolidatedNodes result(nodes);
   const FractionReport report = reportOf(execution, "consolidation");
-  const auto report_from = [&report](double begin, double share) -> FractionReport {
-    return [=](double fraction) { reportFraction(report, begin + share * fraction); };
+  const auto report_from = [&report](double begin, double length) -> FractionReport {
+    return [=](double fraction) { reportFraction(report, begin + length * fraction); };
   };
   Execution quiet;
   quiet.threads = execution.threads;
   const MovedPoints coarse = NoisyCloud(nodes, quiet, report_from(0.0, 0.7)).onSurface();
-  // What is left of the noise is taken off again. Without, normals of the jug are 20 % worse.
+  // The second pass takes off the rest of the noise.
   const MovedPoints fine = NoisyCloud(coarse.points, quiet, report_from(0.7, 0.3)).onSurface();
   Indexed<double> distances;
   for (const Index c : fine.from)
     distances.push_back(coarse.distances[c]);
   const std::vector<Index> left = thinned(fine.points, distances, quiet);
   result.points = fine.points(Eigen::all, left);
-  // Others are part of the nearest.
+  // Each node is merged into the nearest point, unless it became a point itself.
   const std::vector<Index> nearest = findNearest(result.points, nodes, quiet);
   result.point_of_node.assign(nearest.begin(), nearest.end());
   Index point = 0;
@@ -417,7 +406,7 @@ ConsolidatedNodes consolidated(const Positions& nodes, const Execution& executio
   return result;
 }
 
-/// The points in the order and the unit of the input.
+/// The points in the order of the input and in its unit.
 Consolidation toInput(const OrderedPoints& nodes, const ConsolidatedNodes& consolidated) {
   Consolidation result;
   const Indexed<Index> node_of_input = nodesOfInput(nodes);
@@ -465,18 +454,17 @@ double squaredDistance(const Eigen::Vector3d& point, const Eigen::Matrix3d& corn
 
 bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars,
              const Execution& execution) {
-  // Noise is the median error of the prediction of a point by its 10 nearest. In spacings, that of
-  // clean clouds is at most .12, of merged scans .13 to .28, of noise of one spacing .45.
+  // Noise is the median error of the prediction of a point by its 10 nearest [spacing]: at most .12
+  // in clean clouds, .13 to .28 in merged scans.
   constexpr double min_noise = 0.12;
-  // The same in distances of the nearest point, times the irregularity. Of vertices with noise of a
-  // quarter of an edge it is .2 to .4, of merged scans .27 to .59, of noise of half an edge .31 to
-  // .6.
+  // The same in distances of the nearest point, times the irregularity: .2 to .4 for noise of a
+  // quarter of an edge, .27 to .59 for merged scans.
   constexpr double min_relative_noise = 0.38;
-  // The prediction by 20 points is as good as that by 10, up to 1.15 times the error with noise of
-  // several spacings; of a limb or a wall that is thinner than they reach it is 1.19 to 7 times.
+  // Noise lets the error grow up to 1.15 times from 10 points to 20; limbs and walls that are
+  // thinner than the neighbourhood 1.19 to 7 times.
   constexpr double max_growth = 1.18;
-  // Edges of only one of two stars: at most .035 of sheets that are told apart, of merged scans .05
-  // and more.
+  // Fraction of the edges that only one of two stars has: at most .035 for separate sheets, at
+  // least .05 for merged scans.
   constexpr double min_disagreement = 0.04;
   constexpr Index samples = 400;
   const auto n = static_cast<Index>(points.cols());
@@ -487,7 +475,7 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
       !(oneSidedFraction(stars, execution.threads, reportOf(execution, "consolidation")) >
         min_disagreement))
     return false;
-  constexpr Index reach = 6 * kLeastSize;  // of the weights, around 20 neighbours
+  constexpr Index reach = 6 * kMinSize;  // neighbours within the weights around 20
   const NeighborLists lists = neighbors.search(queries, reach);
   std::vector<double> nearest;
   std::vector<double> spacings;
@@ -504,9 +492,9 @@ bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& s
     if (static_cast<Index>(around.size()) < reach)
       return false;
     nearest.push_back(distance(1));
-    spacings.push_back(distance(kLeastSize) * std::sqrt(kPi / kLeastSize));
+    spacings.push_back(distance(kMinSize) * std::sqrt(kPi / kMinSize));
     for (std::size_t t = 0; t < errors.size(); ++t) {
-      const Index size = kLeastSize << t;
+      const Index size = kMinSize << t;
       fit.compute(points, {around.data(), around.data() + around.size()}, points.col(i), i,
                   kTrialWidth * distance(size));
       errors[t].push_back(std::abs(fit.height()));

@@ -22,10 +22,10 @@ struct Consolidation {
 /// that the layers of merged scans become one.
 ///
 /// Points move to the quadric of moving least squares through their neighbours (Levin 2004,
-/// "Mesh-independent surface interpolation"), twice. Neighbourhoods are at least as large as they
-/// must be to be flat; from there, leave-one-out cross-validation chooses among four sizes. Where
-/// they are large, fewer points are moved; at the end, those that noise does not tell apart are
-/// merged, and each of the others with the nearest.
+/// "Mesh-independent surface interpolation"), twice. Neighbourhoods are large enough to be flat;
+/// from there, leave-one-out cross-validation chooses among four sizes. Where they are large, fewer
+/// points move. At the end, points that noise does not separate are merged, and each of the others
+/// is merged with the nearest.
 ///
 /// \param points 3 x n, finite.
 /// \param execution threads, progress
@@ -34,24 +34,24 @@ struct Consolidation {
 /// \throw InvalidInput for a point that is not finite; Cancelled.
 /// Cost: O(n log n), some 250 neighbours in fits of quadrics for each point.
 ///
-/// No guarantees: edges are rounded over the size of the neighbourhood. Leave out outliers before,
+/// No guarantees: edges are rounded over the size of the neighbourhood. Leave out outliers first,
 /// \see findOutliers. Isolated points stay where they are.
 Consolidation consolidate(const Positions& points, const Execution& execution = {});
 
 namespace internal {
 
-/// Whether the noise of a cloud is such that a mesh through its points folds.
+/// Whether a cloud is so noisy that a mesh through its points folds.
 ///
 /// \param points 3 x n, with their neighbours and stars. Too few points are not noisy.
 /// Cost: that of a comparison of the stars, and of 400 fits where they disagree.
 bool isNoisy(const Positions& points, const Neighbors& neighbors, const Stars& stars,
              const Execution& execution);
 
-/// The distance from a mesh within which a fraction of some points are, measured to the triangles
-/// around the vertex of each.
+/// The quantile of the distances of points from a mesh, measured to the triangles around the vertex
+/// of each.
 ///
-/// \param fraction        in [0, 1].
-/// \param vertex_of_point -1 of points that do not count.
+/// \param fraction        of the quantile, in [0, 1].
+/// \param vertex_of_point -1 for points that do not count.
 double distanceWithin(double fraction, const Positions& points,
                       const std::vector<Index>& vertex_of_point, const Positions& vertices,
                       const Triangles& triangles, int threads);

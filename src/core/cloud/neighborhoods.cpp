@@ -27,7 +27,7 @@ void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
                          " of " + std::to_string(n) + " points; indices must be in [0, n)");
 }
 
-/// The caller's search, in the numbers of nodes.
+/// The caller's search, in terms of nodes.
 NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& inputs,
                               const NeighborSearchFactory& search_of, const Execution& execution) {
   const auto in_cloud = [&](const std::vector<Index>& positions) {
@@ -43,8 +43,7 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& 
     node_of_input[input_of_node[node]] = node;
   return [search = search_of(points), input_of_node, node_of_input,
           report = reportOf(execution, "neighbors")](const std::vector<Index>& queries, int count) {
-    // Points that a caller's search is asked for at once: between two questions progress is
-    // reported.
+    // Number of points in one call of the search, between two reports of progress.
     constexpr std::size_t question = 4096;
     NeighborLists lists;
     for (std::size_t begin = 0; begin < queries.size(); begin += question) {
@@ -86,7 +85,7 @@ Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& i
     neighbors_.search = std::move(known->search);
   else
     neighbors_.search = makeNeighborSearch(nodes_.points, execution);
-  // The tangent Delaunay graph searches for up to 32 where 12 do not certify its cells.
+  // The tangent Delaunay graph searches for up to 32 if 12 do not certify its cells.
   neighbors_.lists = neighbors_.search(firstIndices(nodes_.input_of_node.size()),
                                        options.method == Method::Paper ? options.paper.k : 12);
 }
@@ -95,7 +94,8 @@ void Neighborhoods::findStars(const Execution& execution) {
   if (stars_.size() > 0)
     return;
   stars_ = internal::findStars(nodes_.points, neighbors_, execution);
-  agreed_ = joinedAlongRims(nodes_.points, agreedGraph(nodes_.points, stars_, execution), stars_);
+  agreed_ =
+      joinedAlongBoundaries(nodes_.points, agreedGraph(nodes_.points, stars_, execution), stars_);
 }
 
 void Neighborhoods::release() {

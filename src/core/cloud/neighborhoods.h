@@ -16,9 +16,8 @@ struct SearchedNodes {
   NeighborSearch search;
 };
 
-/// The distinct points of a cloud, or of some of its points, with their neighbours. Those of points
-/// without outliers, or of a part, are found anew: to keep what has not changed saved 7 % of
-/// the time of a cloud with outliers, and took 200 lines.
+/// The distinct points of a cloud, or of some of its points, with their neighbours. Without
+/// outliers, or for a part, all are found anew: updating them would save little time.
 class Neighborhoods {
 public:
   /// Finds the neighbours of a cloud's points.
@@ -26,23 +25,23 @@ public:
   /// \param cloud     3 x n.
   /// \param inputs    indices of the points to use, ascending, finite.
   /// \param options   method, k
-  /// \param search_of makes the search; empty: a k-d tree is built.
-  /// \param known     the nodes of these points, if they are known.
+  /// \param search_of makes the search; if empty, a k-d tree is built.
+  /// \param known     the nodes of these points, if they are known already.
   /// \throw InvalidInput for too many points, too large coordinates, or fewer than four distinct
   ///        points.
   Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs, const Options& options,
                 const NeighborSearchFactory& search_of, const Execution& execution,
                 std::optional<SearchedNodes> known = {});
 
-  /// Finds the stars of all nodes and their agreed graph, if that is not done.
+  /// Finds the stars of all nodes and their agreed graph, unless they are known.
   void findStars(const Execution& execution);
-  /// Frees neighbours and stars, which are not needed once there is a graph.
+  /// Frees neighbours, stars and agreed graph, which are not needed once there is a graph.
   void release();
 
-  /// Whether they are those of the given points.
+  /// Whether these are the neighbourhoods of the given points.
   bool areOf(const std::vector<Index>& inputs) const { return inputs_ == inputs; }
   const Positions& points() const { return nodes_.points; }  ///< 3 x v, of the nodes
-  /// The nodes; their input points are positions in the inputs.
+  /// The nodes. Their input points are positions in the inputs.
   OrderedPoints& nodes() { return nodes_; }
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }

@@ -14,27 +14,23 @@
 namespace spherical_param::internal {
 namespace {
 
-// The experiments are on 14 models, each as it is, as a random quarter, with noise of a quarter of
-// an edge and sampled at random, and on the models with 1 % of points anywhere in their box.
-
-/// Neighbours to which the surface beside a near outlier is fitted.
+/// Number of neighbours to which the surface beside a near outlier is fitted.
 constexpr std::size_t kFittedNeighbors = 20;
 
 /// Whether the origin is off the quadric of least squares through its neighbours.
 bool isOff(const std::vector<Eigen::Vector3d>& neighbors, QuadricFit& quadric) {
   constexpr double n = kFittedNeighbors;
   quadric.fit(neighbors, std::vector<double>(kFittedNeighbors, 1.0 / n));
-  // In a gap between the neighbours, wider than a spacing, there is nothing to be off.
+  // In a gap between the neighbours, wider than a spacing, there is no surface.
   if (quadric.gap() > 1.0)
     return false;
-  // The fit itself is less certain where it is not held by neighbours.
+  // Where there are no neighbours, the fit itself is less certain.
   const double distance = std::abs(quadric.height()) / std::sqrt(1.0 + quadric.leverage() / n);
   const double deviation = quadric.residual() * std::sqrt(n / (n - QuadricFit::kCoefficients));
   // Points nearer to the surface than this are never outliers [spacing].
   constexpr double min_distance = 0.25;
-  // Outliers are off by more than this number of standard deviations of their neighbours. With 10,
-  // random quarters of whole objects lose points; with 20 none does, and 1 % fewer stray points of
-  // 14 clouds are found.
+  // Outliers are off by more than this number of standard deviations of their neighbours. With
+  // fewer, coarsely sampled objects lose points.
   constexpr double min_deviations = 20.0;
   return distance > std::max(min_distance, min_deviations * deviation);
 }
@@ -50,9 +46,9 @@ std::vector<NearPoint> nearestOnSurface(const Positions& points, Index i, const 
   return near;
 }
 
-/// The points that are not stray and may be off the surface: those not in the plane of their star.
+/// The points that may be off the surface, since they are not in the plane of their star; without
+/// stray points.
 std::vector<Index> pointsOffPlane(const Stars& stars, const Indexed<char>& is_stray, int threads) {
-  // Of 831 near outliers of 286 clouds one is missed, also with 0.25; with 0.3, three.
   constexpr float max_height = 0.2F;
   return collectBlocks<Index>(
       stars.size(), threads, {}, [&](Index begin, Index end, std::vector<Index>& found) {
@@ -62,14 +58,14 @@ std::vector<Index> pointsOffPlane(const Stars& stars, const Indexed<char>& is_st
       });
 }
 
-/// Marks the stray points, and isolated ones near a surface: they are far from the quadric through
-/// their neighbours, relative to the spacing there and to how far the neighbours are from it.
+/// Marks the stray points, and isolated ones near a surface. These are far from the quadric through
+/// their neighbours, compared to the spacing there and to the neighbours' own distances from it.
 Indexed<char> withNearOutliers(const Positions& points, const Neighbors& neighbors,
                                const Stars& stars, const Indexed<char>& is_stray,
                                const Execution& execution) {
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "outliers");
-  // Points among more stray ones are not looked at.
+  // Points among more stray ones are not examined.
   constexpr std::size_t max_searched = 16 * kFittedNeighbors;
   Indexed<char> marked = is_stray;
   Indexed<double> spacing(stars.size());
@@ -82,7 +78,7 @@ Indexed<char> withNearOutliers(const Positions& points, const Neighbors& neighbo
   for (std::size_t count = kFittedNeighbors;
        !due.empty() && count < std::min(stars.size(), max_searched); count *= 2) {
     const NeighborLists lists = neighbors.search(due, static_cast<int>(count));
-    Indexed<char> has_few(due.size(), 0);  // the others in the list are stray
+    Indexed<char> has_few(due.size(), 0);  // the list has too many stray points
     forEachIndex<QuadricFit>(due.size(), threads, report, [&](QuadricFit& quadric, Index list) {
       const Index i = due[static_cast<std::size_t>(list)];
       const auto near =
@@ -110,20 +106,20 @@ Indexed<char> withNearOutliers(const Positions& points, const Neighbors& neighbo
   return marked;
 }
 
-/// Neighbours that make the surface of a point.
+/// Number of neighbours that define the surface at a point.
 constexpr int kNeighbors = 16;
-/// Fewer span no plane.
+/// Fewer neighbours span no plane.
 constexpr int kMinNeighbors = 3;
 
 /// The distance of a point from the plane (or line) of least squares through its neighbours.
 double distanceFromPlane(const Positions& points, Index i, const std::vector<Index>& neighbors) {
-  // Differences: a far origin costs no digits.
+  // Relative to the point: far from the origin, digits would be lost.
   Eigen::Matrix3Xd offsets = points(Eigen::all, neighbors).colwise() - points.col(i);
   const Eigen::Vector3d centroid = offsets.rowwise().mean();
   offsets.colwise() -= centroid;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(offsets * offsets.transpose());
   const Eigen::Vector3d& spread = axes.eigenvalues();  // ascending, squared
-  // Neighbours whose spread across is less than this fraction of that along are on a line.
+  // Neighbours on a line have a smaller ratio of the spreads across and along it.
   constexpr double min_spread_ratio = 1e-6;
   if (spread[1] <= min_spread_ratio * min_spread_ratio * spread[2]) {
     const Eigen::Vector3d along = axes.eigenvectors().col(2);
@@ -132,7 +128,7 @@ double distanceFromPlane(const Positions& points, Index i, const std::vector<Ind
   return std::abs(centroid.dot(axes.eigenvectors().col(0)));
 }
 
-/// The points' neighbours, of which outliers are taken out, and their scores.
+/// The neighbours of the points, without outliers, and the scores of the points.
 class Scoring {
 public:
   Scoring(const Positions& points, const NeighborLists& lists, int threads)
@@ -144,13 +140,13 @@ public:
     });
   }
 
-  /// Takes the given points out of all lists, and computes the scores of the others.
+  /// Removes the given points from all lists, and computes the scores of the others.
   void compute(const Indexed<char>& is_outlier) {
     forEachIndex(scores.size(), threads_, {}, [&](Index i) {
       std::vector<Index>& around = neighbors_[i];
       const auto rest = std::stable_partition(around.begin(), around.end(),
                                               [&](Index j) { return is_outlier[j] == 0; });
-      // With too few left, those that were there are better than none.
+      // If too few are left, the list stays as it was.
       if (rest - around.begin() >= kMinNeighbors)
         around.erase(rest, around.end());
       const Row<Index> used = usedOf(i);
@@ -168,7 +164,7 @@ public:
   Indexed<double> scores;
 
 private:
-  /// The k nearest of the neighbours that are left.
+  /// The kNeighbors nearest of the remaining neighbours.
   Row<Index> usedOf(Index i) const {
     const std::vector<Index>& all = neighbors_[i];
     return Row<Index>(all.data(), all.data() + all.size()).first(kNeighbors);
@@ -184,7 +180,7 @@ private:
     const double scale = mean_distance_[around[around.size() / 2]];
     if (!(scale > 0.0))
       return 0.0;  // neighbours in one place have no scale
-    // Neighbours with mean distances longer than this number of times their median may be outliers.
+    // Neighbours may be outliers if their mean distance is longer than this [median of these].
     constexpr double max_distance_ratio = 2.0;
     while (mean_distance_[around.back()] > max_distance_ratio * scale)
       around.pop_back();
@@ -206,9 +202,11 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
   DeviatingPoints result;
   Scoring scoring(points, lists, threads);
   Indexed<char> is_outlier(lists.size(), 0);
-  // Until a round marks less than 1 % of all that are marked.
+  // The last round marks at most this fraction of those marked before.
+  constexpr double min_gain = 0.01;
   std::size_t marked = 0;
-  for (std::size_t gained = 1; 100 * gained > marked && lists.size() - marked > kMinNeighbors;
+  for (std::size_t gained = 1;
+       gained > fractionOf(min_gain, marked) && lists.size() - marked > kMinNeighbors;
        marked += gained) {
     reportFraction(report, 0.0);
     scoring.compute(is_outlier);
@@ -244,10 +242,10 @@ Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& poin
   Indexed<char> marked(stars.size(), 0);
   for (const StrayPoint& each : stray)
     marked[each.point] = 1;
-  // The others among themselves: those of a net have each other for neighbours, and stray points
-  // between two sheets are in the plane of both.
   if (mode == OutlierMode::Auto)
     return withNearOutliers(points, neighbors, stars, marked, execution);
+  // Without stray points: those of a net are neighbours of each other, and those between two sheets
+  // are in the plane of both.
   Indexed<Index> others;
   for (const Index i : indicesOf(marked))
     if (marked[i] == 0)

@@ -13,8 +13,8 @@ namespace spherical_param::internal {
 /// Marks the outliers of a cloud.
 ///
 /// OutlierMode::Auto: stray points, \see strayPoints, and isolated points near a surface. Points
-/// within one spacing of a surface (perhaps noise) or of the rim of an opening (perhaps the surface
-/// continued) are kept.
+/// within one spacing of a surface (perhaps noise) or of the boundary loop of an opening (perhaps
+/// more of the surface) stay.
 ///
 /// OutlierMode::Deviation: points too far from the average of their neighbours (Zwicker and Gotsman
 /// 2004, section 4.2), \see deviatingPoints, and stray points beyond the same threshold.
@@ -32,7 +32,7 @@ Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& poin
 /// Points that are off the surface of their neighbours.
 struct DeviatingPoints {
   std::vector<Index> indices;  ///< ascending
-  /// n entries: score of each point; for an outlier that of the round in which it was found.
+  /// n entries: score of each point; of an outlier, in the round in which it was found.
   std::vector<double> scores;
   double threshold = 0.0;  ///< only outliers are above it
 };
@@ -50,12 +50,12 @@ struct DeviatingPoints {
 ///
 /// mean and deviation over all points, with scores above 1 counted as 1, so that far outliers do
 /// not hide nearer ones. Points of a surface hardly reach 1, even at sharp corners. Outliers are
-/// removed from the neighbour lists, and the search is repeated until it finds no more: a group of
-/// outliers dissolves from its rim.
+/// removed from the neighbour lists, and the search is repeated until it finds hardly any more: a
+/// group of outliers dissolves from its boundary.
 ///
-/// Why not |p_i - c_i|: on an unevenly sampled surface, a point at the rim of a dense region is far
-/// from the centroid, but along the surface. The scale comes from the neighbours' distances because
-/// those of an outlier itself are long.
+/// Why not |p_i - c_i|: on an unevenly sampled surface, a point at the edge of a dense region is
+/// far from the centroid, but along the surface. The scale comes from the distances of the
+/// neighbours because those of an outlier itself are long.
 ///
 /// \param points 3 x n, finite, distinct.
 /// \param lists  n neighbour lists, the nearest of each point; unsorted, longer or shorter than k,
@@ -66,7 +66,7 @@ struct DeviatingPoints {
 ///
 /// No guarantees: a group as dense as the surface, or larger than k, is a surface of its own; an
 /// outlier beyond the tip of a thin limb may be in the plane of its neighbours; where the spacing
-/// jumps tenfold, points at the rim may be taken for outliers.
+/// jumps tenfold, points at the jump may be taken for outliers.
 DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& lists, double sigma,
                                 const Execution& execution);
 

@@ -13,7 +13,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// The points that are not among the others; both ascending.
+/// The points that are not among the others; both lists are ascending.
 std::vector<Index> without(const std::vector<Index>& points, const std::vector<Index>& others) {
   std::vector<Index> rest;
   std::set_difference(points.begin(), points.end(), others.begin(), others.end(),
@@ -81,7 +81,7 @@ void Selection::takeApart(bool is_never_empty) {
   reportFraction(report, 0.5);
   parts_ = cloud_->groupInputs(part_of);
   if (parts_.empty()) {
-    // The largest part of a few points is all of them.
+    // The largest part of a small cloud is the whole cloud.
     const bool are_few = options_.parts == PartsMode::Largest &&
                          inputs_.size() < static_cast<std::size_t>(options_.min_points);
     if (is_never_empty || are_few)

@@ -54,7 +54,7 @@ void ComponentTree::visit(const Node& node, Index i, const std::vector<Index>& e
   const auto accepts = [&](Index other) {
     return component == kAnyOther ? other != component_[i] : other == component || other == kMixed;
   };
-  // A node at exactly the best distance may still hold the tie with lower indices.
+  // A node at exactly the best distance may still hold a point of a lower index.
   if (!accepts(node.component) || node.box.squaredExteriorDistance(point) > best.squared_distance)
     return;
   if (node.left == 0) {

@@ -10,8 +10,8 @@
 
 namespace spherical_param::internal {
 
-/// A k-d tree that finds the nearest point of ANOTHER component. It skips subtrees within the
-/// query's own component, whose points a general search would visit.
+/// A k-d tree that finds the nearest point of another component than the query's. It skips subtrees
+/// within the query's component, whose points a general search would visit.
 class ComponentTree {
 public:
   /// Two points of different components; ordered by distance, then by indices, so that ties are
@@ -30,12 +30,12 @@ public:
   /// \param points 3 x n, finite, n >= 1; must outlive the tree.
   explicit ComponentTree(const Positions& points);
 
-  /// \param component n entries, >= 0: the component of each point. Before, each is one by itself.
+  /// \param component n entries, >= 0: the component of each point. At first, each point is one.
   void setComponents(Indexed<Index> component);
 
   static constexpr Index kAnyOther = -1;
-  /// Lowers `best` to point i and its nearest point in a component, except those in `excluded`, if
-  /// that pair is less.
+  /// Finds the nearest point to point i in a component, except those in `excluded`. Replaces `best`
+  /// by this pair if it is less.
   void findNearest(Index i, const std::vector<Index>& excluded, Pair& best,
                    Index component = kAnyOther) const {
     visit(nodes_[0], i, excluded, component, best);

@@ -37,10 +37,10 @@ struct StrayPoint {
 /// A connected neighbour graph.
 struct NeighborGraph {
   Graph graph;
-  /// The edges that join its components, in the order of their insertion. Those of
-  /// the tangent Delaunay graph also join biconnected components.
+  /// The edges that join its components, in the order of their insertion. Those of the tangent
+  /// Delaunay graph also join biconnected components.
   std::vector<Bridge> bridges;
-  /// Ascending; also nodes of the graph. Only of the tangent Delaunay graph.
+  /// Ascending; they are nodes of the graph as well. Only the tangent Delaunay graph has them.
   std::vector<StrayPoint> stray_points;
 };
 

@@ -14,10 +14,11 @@ Bridge bridgeOf(const Positions& points, const ComponentTree::Pair& pair) {
   return {pair.from, pair.to, edgeLength(points, pair.from, pair.to)};
 }
 
-/// Appends up to `count` bridges, the shortest first, between ends that are not taken yet.
+/// Appends up to `count` bridges, the shortest first, with different ends.
 ///
-/// \param from nodes that a bridge may begin at.
-/// \param to   component that it leads to, of the tree.
+/// \param from  nodes that a bridge may begin at.
+/// \param to    component of the tree that it leads to.
+/// \param taken nodes that are no ends.
 template <typename Nodes>
 void appendClosest(const Positions& points, const ComponentTree& tree, const Nodes& from, Index to,
                    std::vector<Index> taken, int count, std::vector<Bridge>& bridges) {
@@ -33,25 +34,25 @@ void appendClosest(const Positions& points, const ComponentTree& tree, const Nod
   }
 }
 
-/// A depth-first search of a connected graph from node 0, and the parts below which it finds no
-/// edge past their parent (Hopcroft and Tarjan 1973).
+/// A depth-first search of a connected graph from node 0, and the leaves of its block-cut tree
+/// (Hopcroft and Tarjan 1973).
 struct SearchTree {
   explicit SearchTree(const Graph& graph);
 
   Indexed<Index> rank;
   Indexed<Index> parent;
-  Indexed<Index> size;   ///< of what is below a node, itself included: ranks from its own on
+  Indexed<Index> size;   ///< number of nodes below each, with itself: their ranks follow its own
   Indexed<Index> order;  ///< the node of each rank
-  /// Nodes below which is all of a part, without a part among them: only their parent joins them to
-  /// the others. There are some if a node alone joins two parts of the graph.
+  /// The top node of each part: only its parent joins the nodes below it to the others, and they
+  /// contain no other such part.
   std::vector<Index> parts;
 };
 
 SearchTree::SearchTree(const Graph& graph)
     : rank(graph.size(), -1), parent(graph.size(), -1), size(graph.size(), 1) {
   order.reserve(graph.size());
-  Indexed<Index> reach(graph.size());         // lowest rank that the nodes below have an edge to
-  Indexed<char> holds_part(graph.size(), 0);  // whether there is a part among the nodes below
+  Indexed<Index> reach(graph.size());  // lowest rank that an edge from the nodes below reaches
+  Indexed<char> holds_part(graph.size(), 0);  // whether the nodes below contain a part
   std::vector<Index> parts_of_root;
   Index children_of_root = 0;
   Indexed<std::size_t> next(graph.offsets.begin(), graph.offsets.end() - 1);
@@ -84,7 +85,7 @@ SearchTree::SearchTree(const Graph& graph)
     }
     current = above;
   }
-  // All that the root has is below its only child.
+  // With one child, the root is no articulation point.
   if (children_of_root > 1)
     parts.insert(parts.end(), parts_of_root.begin(), parts_of_root.end());
 }
@@ -143,7 +144,7 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
     }
     bridges.insert(bridges.end(), joints.begin(), joints.end());
     for (const Bridge& joint : joints) {
-      // The joints are a tree of the components: from the smaller ends no point asks too often.
+      // From the smaller end, so that no point is asked too often: the joints are a tree.
       const auto [smaller, other] =
           std::minmax({part[joint.from], part[joint.to]},
                       [&](Index a, Index b) { return sizes[a] < sizes[b]; });
@@ -168,7 +169,7 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
   for (const Index top : search.parts) {
     const auto begin = search.order.begin() + search.rank[top];
     const auto end = begin + search.size[top];
-    // From the smaller side: the search may have begun in the part that dangles.
+    // From the smaller side.
     const bool from_inside = search.size[top] <= n / 2;
     std::vector<Index> from(from_inside ? begin : search.order.begin(), from_inside ? end : begin);
     if (!from_inside)

@@ -10,9 +10,9 @@
 /// Common functions of both neighbour graphs.
 namespace spherical_param::internal {
 
-/// A graph, or a matrix whose entries are its lengths, of rows that are found by several threads.
+/// A graph, or a matrix with the lengths as entries, whose rows several threads find.
 ///
-/// \param find (begin, end, rows) appends the rows of [begin, end), which are a block.
+/// \param find (begin, end, rows) appends the rows of a block [begin, end).
 template <typename Find>
 Graph rowsOfBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
   std::vector<Graph> blocks((count + kBlockSize - 1) / kBlockSize);
@@ -36,7 +36,7 @@ Graph rowsOfBlocks(std::size_t count, int threads, const FractionReport& report,
   return all;
 }
 
-/// Length of an edge; positive for distinct points even where the squares underflow.
+/// Length of an edge; positive even if the squares underflow.
 double edgeLength(const Positions& points, Index i, Index j);
 
 /// Point spacing at a node: the median length of its edges, robust against long edges across an
@@ -63,10 +63,9 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
 /// \param graph  n nodes, connected.
 std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count);
 
-/// The graph with further edges. Of those that repeat each other the shortest is added, and none
-/// that repeats one of the graph.
+/// The graph with more edges: of equal ones the shortest, unless the graph has it.
 ///
-/// \param nodes minimum number of nodes of the result, the first ones those of the graph.
+/// \param nodes minimum number of nodes of the result; the graph's come first.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_t nodes = 0);
 
 }  // namespace spherical_param::internal

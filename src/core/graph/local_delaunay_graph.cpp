@@ -11,11 +11,8 @@
 namespace spherical_param::internal {
 namespace {
 
-// The experiments are on 13 models and 13 shapes of up to 60,000 points, on 25 awkward clouds (few
-// points, lines of a scanner, tubes, parts, volumes) and on 35 open, partial and raw scans.
-
-/// Edges between points without a tangent plane that only one of them finds near: their
-/// neighbourhood is the same from both ends, but for the ends of the lists.
+/// Edges between points without a tangent plane that only one of the two stars has. Gabriel
+/// neighbours are mutual; only the lists may end before one of them.
 std::vector<Bridge> edgesWithoutPlane(const Positions& points, const Stars& stars) {
   std::vector<Bridge> edges;
   for (const Index i : indicesOf(stars))
@@ -28,9 +25,8 @@ std::vector<Bridge> edgesWithoutPlane(const Positions& points, const Stars& star
 
 /// The edges from points of low degree to their whole star and their nearest points.
 std::vector<Bridge> edgesOfWeak(const Positions& points, const Stars& stars, const Graph& graph) {
-  // Degree below which a point is repaired. Below 4 would be too generous: it brings back edges
-  // that one star alone saw, across gaps; a model then has 1,203 self-intersections instead of 0.
-  // With 0, a pair of elephants has 2,093,249 instead of 77,968.
+  // Degree below which a point is repaired. A higher one would bring back edges across gaps, which
+  // one star alone has.
   constexpr std::size_t min_degree = 3;
   std::vector<Bridge> edges;
   std::optional<ComponentTree> tree;
@@ -72,8 +68,8 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars, Graph agreed,
                                       const Execution& execution) {
-  // Bridges of each pair of components that are joined: one alone lets a part dangle, and collapse
-  // in the embedding. With 1 or 2, two spheres have 962 or 780 self-intersections instead of 0.
+  // Bridges between two components that are joined. With fewer, a part would dangle and collapse in
+  // the embedding.
   constexpr int bridges_per_joint = 3;
   NeighborGraph result;
   if (stars.size() == 0)
@@ -90,8 +86,8 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& star
   UnionFind parts = connectedComponents(graph);
   result.bridges = shortestBridges(points, parts, bridges_per_joint);
   add(result.bridges);
-  // Parts that only one node joins to the others are tied, too: they would collapse. Of parts in a
-  // chain only the ends: needles have such chains, and gained nothing from more rounds.
+  // Parts that hang by one node would collapse, too. Of parts in a chain, as in a needle, only the
+  // ends get bridges: more gain nothing.
   const std::vector<Bridge> ties = articulationBridges(points, graph, bridges_per_joint - 1);
   add(ties);
   result.bridges.insert(result.bridges.end(), ties.begin(), ties.end());

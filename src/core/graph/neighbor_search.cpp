@@ -14,8 +14,8 @@
 namespace spherical_param {
 namespace {
 
-/// Squared distance in space. FLANN's own distances would make the tree one of those in PCL's
-/// libraries, which open a parallel region for each query and would take the place of this one.
+/// Squared distance in space. With FLANN's own distances the linker could take the trees of PCL's
+/// libraries for this one, and these open a parallel region for each query.
 struct SquaredDistance {
   using is_kdtree_distance = bool;  // NOLINT(readability-identifier-naming): FLANN's name
   using ElementType = double;
@@ -57,7 +57,7 @@ private:
 
   /// The `count` nearest points, the nearest first.
   void findNearest(const double* place, std::size_t count, Nearest& nearest) const {
-    // From here on a heap is faster than a sorted list.
+    // For at least this number a heap is faster than a sorted list.
     constexpr std::size_t many = 128;
     if (count < many)
       findNearest<flann::KNNSimpleResultSet<double>>(place, count, nearest);
@@ -73,17 +73,12 @@ private:
     found.copy(nearest.points.data(), nearest.distances.data(), count, true);
   }
 
-  /// Calls work(query, memory) for each query.
+  /// Calls work(memory, query) for each query. FLANN's own loop is a parallel region, which no
+  /// exception may leave.
   template <typename Work>
   void forEachQuery(std::size_t count, const Execution& execution, const Work& work) const {
-    // One by one: FLANN's own loop is a parallel region, which no exception may leave.
-    internal::forEachBlock(count, internal::threadCount(execution.threads, count),
-                           internal::reportOf(execution, "neighbors"),
-                           [&](std::size_t, std::size_t begin, std::size_t end) {
-                             Nearest nearest;
-                             for (std::size_t q = begin; q < end; ++q)
-                               work(q, nearest);
-                           });
+    internal::forEachIndex<Nearest>(count, internal::threadCount(execution.threads, count),
+                                    internal::reportOf(execution, "neighbors"), work);
   }
 
   Positions points_;
@@ -107,7 +102,8 @@ NeighborLists KdTree::search(const std::vector<Index>& queries, int count,
   for (std::size_t i = 1; i <= queries.size(); ++i)
     lists.offsets.push_back(i * size);
   lists.indices.resize(queries.size() * size);
-  forEachQuery(queries.size(), execution, [&](std::size_t q, Nearest& nearest) {
+  forEachQuery(queries.size(), execution, [&](Nearest& nearest, Index query) {
+    const auto q = static_cast<std::size_t>(query);
     findNearest(points_.col(queries[q]).data(), size, nearest);
     std::copy(nearest.points.begin(), nearest.points.end(), lists.indices.data() + q * size);
   });
@@ -115,9 +111,9 @@ NeighborLists KdTree::search(const std::vector<Index>& queries, int count,
 }
 
 std::vector<Index> KdTree::nearestTo(const Positions& places, const Execution& execution) const {
-  std::vector<Index> result(internal::columnCount(places));
-  forEachQuery(result.size(), execution, [&](std::size_t q, Nearest& nearest) {
-    findNearest(places.col(static_cast<Eigen::Index>(q)).data(), 1, nearest);
+  internal::Indexed<Index> result(internal::columnCount(places));
+  forEachQuery(result.size(), execution, [&](Nearest& nearest, Index q) {
+    findNearest(places.col(q).data(), 1, nearest);
     result[q] = static_cast<Index>(nearest.points.front());
   });
   return result;

@@ -3,6 +3,7 @@
 #include "rows.h"
 #include "spherical_param/execution.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -32,7 +33,7 @@ struct NearPoint {
   }
 };
 
-/// The nearest others of point i in a list, at most `count`: nearest first, ties by index.
+/// The nearest other points of a list to point i, at most `count`: nearest first, ties by index.
 ///
 /// \param list in any order, perhaps with repetitions and the point itself.
 std::vector<NearPoint> nearestOthers(const Positions& points, Index i,
@@ -44,6 +45,15 @@ struct Neighbors {
   NeighborLists lists;
   NeighborSearch search;  ///< may be empty
 };
+
+/// A sample of at most `most` points, at even steps; ascending.
+inline std::vector<Index> sampleOf(const Positions& points, Eigen::Index most) {
+  const Eigen::Index n = std::min(points.cols(), most);
+  std::vector<Index> sample;
+  for (Eigen::Index i = 0; i < n; ++i)
+    sample.push_back(static_cast<Index>(i * points.cols() / n));
+  return sample;
+}
 
 /// The `count` nearest neighbours of all points. \see makeNeighborSearch
 ///

@@ -15,27 +15,14 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Some columns of a matrix, evenly spread over it.
-Positions someOf(const Positions& points, Eigen::Index count) {
-  const Eigen::Index taken = std::min(count, points.cols());
-  Positions some(3, taken);
-  for (Eigen::Index i = 0; i < taken; ++i)
-    some.col(i) = points.col(i * points.cols() / taken);
-  return some;
-}
-
 /// The nearest others of some points, nearest first.
 using Samples = std::vector<std::vector<NearPoint>>;
 
 Samples nearestOfSome(const Positions& points, Index count) {
-  constexpr std::size_t max_samples = 200;
-  const std::size_t n = columnCount(points);
-  const std::size_t taken = std::min(max_samples, n);
-  std::vector<Index> nodes;
-  for (std::size_t i = 0; i < taken; ++i)
-    nodes.push_back(static_cast<Index>(i * n / taken));
+  constexpr Eigen::Index max_samples = 200;
+  const std::vector<Index> nodes = sampleOf(points, max_samples);
   const NeighborLists lists =
-      makeNeighborSearch(points)(nodes, std::min(count, static_cast<Index>(n) - 1));
+      makeNeighborSearch(points)(nodes, std::min(count, static_cast<Index>(points.cols()) - 1));
   Samples samples;
   for (const Index i : indicesOf(nodes))
     samples.push_back(nearestOthers(points, nodes[static_cast<std::size_t>(i)], listOf(lists, i)));
@@ -63,10 +50,10 @@ struct Axes {
   Eigen::Vector3d direction;  ///< of the largest one
 };
 
-/// The power of the distance with which the number of points within it grows.
+/// The exponent d if the number of points within a distance r grows like r^d.
 double dimensionOf(const Positions& points) {
-  const Positions centers = someOf(points, 100);
-  const Positions others = someOf(points, 4096);
+  const Positions centers = points(Eigen::all, sampleOf(points, 100));
+  const Positions others = points(Eigen::all, sampleOf(points, 4096));
   const auto nth = [&](Eigen::VectorXd& distances, Eigen::Index n) {
     std::nth_element(distances.begin(), distances.begin() + n, distances.end());
     return distances[n];
@@ -83,20 +70,18 @@ double dimensionOf(const Positions& points) {
 
 bool fillVolume(const Positions& points, const Samples& samples, bool are_voxels) {
   constexpr Eigen::Index min_points = 500;
-  // Ratio of variances of the 64 nearest points. Surfaces that fold through space, like gyroids,
-  // have the dimension of a volume, and 0.08 to 0.28 here, with noise of half a spacing; volumes
-  // have 0.55 to 0.9.
+  // Ratio of variances of the 64 nearest points: volumes have 0.55 to 0.9. Surfaces that fold
+  // through space, like gyroids, have the dimension of a volume, but a ratio of at most 0.28.
   constexpr double min_flatness = 0.45;
   constexpr std::size_t patch = 64;
-  // Surfaces have a dimension of 1.7 to 2.4, with noise of 2 and 3 spacings up to 2.67 from 2,000
-  // points on, and up to 2.91 of fewer; solids 2.55 to 2.8, with a density that falls from the
-  // middle 2.9.
+  // Surfaces have a dimension of 1.7 to 2.4; with noise of 3 spacings up to 2.67 from 2,000 points
+  // on, and up to 2.91 of fewer. Solids have 2.55 to 2.8; if their density falls from the
+  // middle, 2.9.
   constexpr double min_dimension = 2.55;
   constexpr double min_of_uneven = 2.85;
   constexpr Eigen::Index min_uneven_points = 2000;
-  // Noise thins out across a surface. Dimension minus the spread of the log density: volumes of
-  // 3,000 points and more have 1.8 to 2, of fewer 1.4 to 1.8; noisy surfaces of such a dimension up
-  // to 1.51.
+  // Dimension minus the spread of the logarithm of the density, since noise thins out across a
+  // surface: volumes have 1.8 to 2, small ones 1.4 to 1.8, noisy surfaces up to 1.51.
   constexpr double min_evenness = 1.6;
   constexpr std::size_t neighbors = 16;
   if (points.cols() < min_points)
@@ -117,10 +102,10 @@ bool fillVolume(const Positions& points, const Samples& samples, bool are_voxels
   return dimension > min_dimension && (is_certain || dimension - spread > min_evenness);
 }
 
-/// Number of the 26 voxels around one that are points, on average; 0 if points are no voxels.
+/// Mean number of points among the 26 voxels around a point; 0 if the points are no voxels.
 double voxelsAround(const Positions& points) {
   constexpr Eigen::Index max_samples = 1000;
-  constexpr double max_ratio = 3.0;       // of the sides of a voxel; more are sheets
+  constexpr double max_ratio = 3.0;       // of the sides of a voxel; beyond, they are sheets
   constexpr std::size_t min_points = 16;  // with the same coordinate
   using Voxel = std::array<long long, 3>;
   std::vector<Voxel> voxels(columnCount(points));
@@ -156,10 +141,10 @@ double voxelsAround(const Positions& points) {
 }
 
 bool areOnCurves(const Positions& points, const Samples& samples) {
-  // \see areOnLines; centre lines with noise of a fifth of their spacing have 0.03.
+  // Centre lines with noise of a fifth of their spacing have 0.03. \see areOnLines
   constexpr double max_width = 0.035;
   constexpr std::size_t neighbors = 4;
-  // From here on there are points across.
+  // At least this width shows points across the line.
   constexpr double min_width = 0.1;
   constexpr double min_flatness = 0.04;
   constexpr double min_turn = 0.04;
@@ -197,8 +182,8 @@ std::vector<Index> withinTwoSteps(const Graph& graph, Index node) {
 
 PointSpread spreadOf(const Positions& points) {
   constexpr Eigen::Index min_points = 100;
-  // Of the 26 voxels around one, 19 to 25 are in layers of three and more and in solids; 17 in two
-  // layers, 14 in the boundary of a solid, 10 in one layer.
+  // Of the 26 voxels around one, 19 to 25 are taken in three or more layers and in solids; 17 in
+  // two layers, 14 in the boundary of a solid, 10 in one layer.
   constexpr double min_voxels = 17.8;
   if (points.cols() < min_points)
     return PointSpread::Surface;
@@ -213,11 +198,11 @@ PointSpread spreadOf(const Positions& points) {
 
 Eigen::Vector3d coarseSteps(const Positions& points, double min_spacings) {
   constexpr Index neighbor = 6;
-  constexpr int digits_lost = 23;  // of a power of two to the next number of single precision
+  constexpr int digits_lost = 23;  // binary digits of a number of single precision
   Eigen::Vector3d steps = Eigen::Vector3d::Zero();
   if (points.cols() <= neighbor)
     return steps;
-  // Not even the points of a line are that near to each other.
+  // Not even points on a line are nearer to each other.
   const double extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();
   const double finest = min_spacings * extent / static_cast<double>(points.cols());
   for (int axis = 0; axis < 3; ++axis) {
@@ -241,8 +226,7 @@ Eigen::Vector3d coarseSteps(const Positions& points, double min_spacings) {
 bool areScattered(const Positions& points, const Stars& stars) {
   constexpr Eigen::Index min_points = 20;
   constexpr Eigen::Index max_points = 100;
-  // Random points in a cube have 0.09 to 0.2 (one of 30 has 0.08); clean shapes of 20 to 100 points
-  // up to 0.08, with noise of half a spacing 0.07 to 0.2.
+  // Random points in a cube have 0.09 to 0.2, clean shapes of 20 to 100 points up to 0.08.
   constexpr double min_disorder = 0.09;
   constexpr std::size_t neighbors = 10;
   if (points.cols() < min_points || points.cols() > max_points)
@@ -254,8 +238,8 @@ bool areScattered(const Positions& points, const Stars& stars) {
 }
 
 bool areOnLines(const Positions& points, const Graph& graph) {
-  // The ratio of the squared spreads of the four nearest points across and along is 0.25 and more
-  // of surfaces, 0.001 of contours five times as far apart as the points on them.
+  // The ratio of the squared spreads of the four nearest points across and along is at least 0.25
+  // on surfaces, and 0.001 on contours five times as far apart as their points.
   constexpr double max_ratio = 0.02;
   constexpr std::size_t neighbors = 4;
   constexpr std::size_t min_points = 100;
@@ -278,7 +262,7 @@ bool areOnLines(const Positions& points, const Graph& graph) {
 }
 
 bool areOnGrid(const Positions& points) {
-  // Of the points of the grid that are seen along the third axis.
+  // Fraction of the places of the grid, seen along the third axis.
   constexpr double min_taken = 0.5;
   std::array<double, 3> counts{};
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,7 +10,7 @@ namespace spherical_param::internal {
 
 void QuadricFit::fit(const std::vector<Eigen::Vector3d>& points,
                      const std::vector<double>& weights) {
-  // Of the normal equations, so that they are regular whatever the points.
+  // Added to the normal equations, so that they are regular for any points.
   constexpr double ridge = 1e-9;
   normal_.setZero();
   height_ = 0.0;

@@ -7,8 +7,8 @@
 
 namespace spherical_param::internal {
 
-/// A quadric of least squares through weighted points near an origin, as a height over their plane
-/// of least squares.
+/// A quadric of least squares through weighted points near an origin, as a height over the plane of
+/// least squares.
 class QuadricFit {
 public:
   /// Coefficients of a height over a plane: 1, x, y, x^2, xy, y^2.
@@ -22,13 +22,13 @@ public:
 
   /// Normal of the plane. The height of the origin is along it.
   const Eigen::Vector3d& normal() const { return normal_; }
-  /// Of the origin above the quadric.
+  /// Height of the origin above the quadric.
   double height() const { return height_; }
   /// Root mean square distance of the points from the quadric.
   double residual() const { return residual_; }
   /// 0 if the points are in a plane, 1 if all directions are alike.
   double roundness() const { return roundness_; }
-  /// Variance of the quadric's height at the origin [variance of a height with all the weight].
+  /// Variance of the quadric's height at the origin [variance of a single height of weight 1].
   double leverage() const;
   /// Distance of the origin from the nearest point, seen along the normal.
   double gap() const;

@@ -15,12 +15,12 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Edges between sheets are steeper than this [sine], and join normals of a smaller cosine. Normals
-/// of opposite sheets are as far apart, and to different sides.
+/// Edges between sheets are steeper than kMaxSheetSlope [sine], and their normals have a smaller
+/// cosine than kMinSheetCosine. Normals of opposite sheets have a cosine below -kMinSheetCosine.
 constexpr double kMaxSheetSlope = 0.6;
 constexpr double kMinSheetCosine = 0.5;
 
-/// An angle counter-clockwise, a full turn if it is 0.
+/// The angle in (0, 2 pi] of a difference of angles.
 double counterClockwise(double angle) {
   return angle > 0.0 ? angle : angle + 2.0 * kPi;
 }
@@ -83,14 +83,14 @@ bool RotationSystem::hasOpposite(const Graph& graph) const {
 }
 
 bool RotationSystem::isOneSided() const {
-  // Neighbours on one sheet for sure have normals of a larger cosine.
+  // Normals of neighbours that are certainly on one sheet have a larger cosine.
   constexpr double min_one_sheet_cosine = 0.7;
-  // Of a Moebius band and a Klein bottle all twisted edges are against the others, of thin wings up
+  // On a Moebius band and a Klein bottle all twisted edges are against the others, on thin wings up
   // to two thirds.
   constexpr std::size_t min_against = 10;
   constexpr double min_fraction = 0.8;
   const auto n = static_cast<Index>(edges_.size());
-  // A normal as it is, or turned.
+  // Node v is v's normal as it is, v + n the turned one. Joined ones are on one side.
   UnionFind sides(2 * edges_.size());
   std::size_t against = 0;
   std::size_t twisted = 0;
@@ -119,15 +119,14 @@ bool RotationSystem::isOneSided() const {
   return against >= std::max(min_against, fractionOf(min_fraction, twisted));
 }
 
-/// Whether neighbours on one sheet have normals to opposite sides. An edge between sheets may be
-/// twice as steep.
+/// Whether neighbours on one sheet have normals to opposite sides.
 bool RotationSystem::isTwisted(Index v, Index w) const {
   constexpr double min_cosine = 0.9;
   return cosine(v, w) < -min_cosine && slope(v, w) < kMaxSheetSlope / 2.0;
 }
 
-/// Whether a twisted edge of v is in a gap between the others: beside an opposite sheet there is
-/// none.
+/// Whether a twisted edge of v is in a wide gap between the other edges. Beside an opposite sheet,
+/// there is no gap.
 bool RotationSystem::isInGap(Index v, Index w) const {
   constexpr double min_gap = 0.55 * kPi;
   const double angle = angles_[entryOf(v, w)];
@@ -185,14 +184,14 @@ bool RotationSystem::areOpposite(Index v, Index w) const {
   return cosine(v, w) < -kMinSheetCosine;
 }
 
-/// Of an edge to the steeper of the planes of its ends [sine].
+/// Slope of an edge over the planes of its ends, the larger one [sine].
 double RotationSystem::slope(Index v, Index w) const {
   const Eigen::Vector3d d = direction(v, w);
   return std::max(std::abs(d.dot(normals_.col(v))), std::abs(d.dot(normals_.col(w))));
 }
 
-/// For each edge, at its lower node, 1 if it crosses a shorter one: the diagonals of four points
-/// that are all neighbours.
+/// For each edge, at its lower node, 1 if it crosses a shorter one. Only the diagonals of four
+/// points that are all neighbours cross.
 std::vector<char> RotationSystem::longerOfCrossing() const {
   std::vector<char> crosses(edges_.neighbors.size(), 0);
   forEachIndex<std::vector<Index>>(
@@ -255,9 +254,9 @@ void RotationSystem::findNormals() {
           add(x);
     }
     moments = moments.selfadjointView<Eigen::Lower>();
-    // How far the moments of directions are taken about their mean, not about 0.
+    // The moments are taken about half of the mean direction. About 0, a node on a sharp edge would
+    // get the normal of one of its two planes.
     constexpr double centered = 0.5;
-    // On a sharp edge the moments alone would decide for one of its two planes.
     if (count > 0.0)
       moments -= centered / count * sum * sum.transpose();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
@@ -266,7 +265,7 @@ void RotationSystem::findNormals() {
   });
 }
 
-/// Turns the normals of each component to one side: along edges between the most similar normals
+/// Turns the normals of each component to one side, along edges between the most similar normals
 /// first.
 void RotationSystem::orientNormals() {
   constexpr int buckets = 256;
@@ -277,8 +276,8 @@ void RotationSystem::orientNormals() {
         edges[static_cast<std::size_t>(std::clamp(
                   static_cast<int>((1.0 - std::abs(cosine(v, w))) * buckets), 0, buckets - 1))]
             .push_back({v, w});
-  // A normal as it is, or turned: one of each pair is on the side of the lowest node of its
-  // component, which represents its set.
+  // Node v is v's normal as it is, v + n the turned one. The one on the side of the lowest node of
+  // the component is in the set of a lower representative.
   const auto n = static_cast<Index>(edges_.size());
   UnionFind sides(2 * edges_.size());
   for (const auto& bucket : edges)

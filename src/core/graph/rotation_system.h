@@ -10,14 +10,13 @@
 
 namespace spherical_param::internal {
 
-/// Edges longer than this are not taken for edges of the surface [larger spacing of their ends].
+/// Longer edges are not on the surface [larger spacing of their ends].
 inline constexpr double kMaxEdgeLength = 1.5;
 
 /// The spacing of each node. \see nodeSpacing
 Indexed<double> nodeSpacings(const Graph& graph, int threads);
 
-/// The short edges of a neighbour graph that do not cross each other; those of each node in the
-/// order around its normal.
+/// The short edges of a neighbour graph that do not cross, sorted around the normal of each node.
 ///
 /// 1. Drop edges longer than 1.5 times the larger spacing of their ends.
 /// 2. Fit a plane to the directions to the neighbours within two steps, and orient the normals,
@@ -40,21 +39,20 @@ public:
   bool leavesSheet(Index v, Index w) const;
   /// Whether some edges of a graph join opposite sheets.
   bool hasOpposite(const Graph& graph) const;
-  /// Whether the surface has only one side: many edges between neighbours on one sheet have normals
-  /// to opposite sides, though ways around them turn no normal over.
+  /// Whether the surface has only one side: many edges join normals to opposite sides, although
+  /// paths around these edges turn no normal over.
   bool isOneSided() const;
 
-  /// The loops of all faces with at least some edges whose mean corner is large enough, with the
-  /// face on the left seen from where the normals point.
+  /// The loops of the faces with at least `min_steps` edges and a mean corner of at least
+  /// `min_corner` [rad]; the face is on the left, seen from outside.
   NeighborRows faces(std::size_t min_steps, double min_corner) const;
 
 private:
-  /// Where v names w.
+  /// The entry of w in the row of v.
   std::size_t entryOf(Index v, Index w) const;
   /// Cosine between the normals of two nodes.
   double cosine(Index v, Index w) const { return normals_.col(v).dot(normals_.col(w)); }
-  /// Whether the edge of v and w is longer than that of a and b; of two as long as each other, that
-  /// of the higher node.
+  /// Whether the edge of v and w is longer than that of a and b; a tie goes to the higher node.
   bool isLonger(Index v, Index w, Index a, Index b) const;
   template <typename Condition>
   void keepEdges(const Condition& meets);

@@ -13,21 +13,14 @@
 namespace spherical_param::internal {
 namespace {
 
-// The experiments are on 13 models and 13 shapes of up to 60,000 points, on 25 awkward clouds (few
-// points, lines of a scanner, tubes, parts, volumes) and on 35 open, partial and raw scans.
-
-/// Voronoi edges shorter than this part of the cell's radius count as none: of four points on a
-/// circle, those across from each other are no neighbours, whatever the round-off. With 0 the graph
-/// of the fandisk, which has such points, depends on it; a view of it has 701 self-intersections
-/// instead of 596 then.
+/// Voronoi edges shorter than this fraction of the cell's radius do not count: opposite points of
+/// four on a circle are no neighbours, whatever the rounding.
 constexpr double kTie = 1e-9;
 
-/// Nearest neighbours that span the tangent plane; more where these are on a line. With 6 the
-/// awkward clouds have 111,926 self-intersections instead of 61,815, with 12 a model has 799
-/// instead of 0.
+/// Nearest neighbours that span the tangent plane; more are taken if these are on a line.
 constexpr Index kTangentNeighbors = 10;
-/// Nearest neighbours used of a list, and searched for, at most. With 12 or 24 a sphere scanned in
-/// lines has some 20,000 self-intersections instead of 3; with 64, 0, but the search takes longer.
+/// Maximum number of nearest neighbours that are searched for and used. Fewer are not enough for
+/// scan lines; more take longer.
 constexpr Index kMaxCandidates = 32;
 
 /// Voronoi cell of the origin in the plane: a convex polygon that is cut by bisectors.
@@ -35,7 +28,7 @@ class VoronoiCell {
 public:
   static constexpr Index kBox = -1;
 
-  /// A square, in place of the unbounded cell.
+  /// Begins with a square in place of the unbounded cell.
   void reset(double half_size) {
     corners_ = {{{half_size, half_size}, kBox},
                 {{-half_size, half_size}, kBox},
@@ -65,8 +58,7 @@ public:
         cut_.push_back(corners_[k]);
       if (inside == (sides_[next] <= tolerance))
         continue;
-      // The side of the new edge begins where the polygon leaves; the old one goes on where it
-      // comes back.
+      // The new edge begins where the polygon leaves the half plane, and ends on an old edge.
       const std::size_t inner = inside ? k : next;
       const std::size_t outer = inside ? next : k;
       const double fraction =
@@ -88,7 +80,7 @@ public:
                         [](const Corner& corner) { return corner.site == kBox; });
   }
 
-  /// Calls found(site) for each edge that is longer than round-off.
+  /// Calls found(site) for each edge that is longer than rounding.
   template <typename Found>
   void forEachSite(const Found& found) const {
     for (std::size_t k = 0; k < corners_.size(); ++k) {
@@ -103,17 +95,17 @@ public:
 private:
   struct Corner {
     Eigen::Vector2d place;
-    Index site;  ///< whose bisector the edge to the next corner is on
+    Index site;  ///< the edge to the next corner is on its bisector
   };
 
   std::vector<Corner> corners_;  ///< counter-clockwise
   std::vector<Corner> cut_;
-  std::vector<double> sides_;  ///< of a bisector that the corners are on; positive: beyond
+  std::vector<double> sides_;  ///< of each corner: positive beyond the bisector
   double squared_radius_ = 0.0;
 };
 
-/// Axes of the `count` nearest candidates about their centroid, by ascending variance, and the
-/// height of the origin. Sets whether they span a plane that can be trusted.
+/// Finds the axes of the `count` nearest candidates about their centroid, by ascending variance,
+/// the height of the origin, and whether they span a reliable plane.
 void findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t count,
                       Eigen::Matrix3d& axes, bool& is_line, Star& star) {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
@@ -129,12 +121,10 @@ void findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t coun
   solver.computeDirect(covariance);
   axes = solver.eigenvectors();
   const Eigen::Vector3d& variances = solver.eigenvalues();
-  // Largest ratio of the smallest to the middle variance of a neighbourhood with a tangent plane:
-  // above, all directions are alike. Stars are better than what takes their place for as long as
-  // there is any plane at all. With 0.5 a model has 6 self-intersections, without a bound 2.
+  // Maximum ratio of the smallest to the middle variance: beyond, all directions are alike. It is
+  // high because stars in a poor plane are better than Gabriel neighbours.
   constexpr double max_plane_roundness = 0.9;
-  // Least ratio of the middle to the largest variance: below, the neighbourhood is a line. Without,
-  // a sphere scanned in lines has 27 self-intersections instead of 3.
+  // Minimum ratio of the middle to the largest variance: below, the neighbourhood is a line.
   constexpr double min_width_ratio = 0.01;
   is_line = !(variances[1] > min_width_ratio * variances[2]);
   star.tangent_plane = !is_line && variances[0] <= max_plane_roundness * variances[1];
@@ -144,9 +134,8 @@ void findTangentPlane(const std::vector<NearPoint>& candidates, std::size_t coun
       max_height));
 }
 
-/// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
-/// diameter the two are. It needs no plane, is the same from both ends, and is decided by the
-/// nearest points alone.
+/// Writes the neighbours in the graph of Gabriel and Sokal (1969): no other point is in the ball on
+/// the edge as diameter. It needs no plane and is symmetric, and the nearest points alone decide.
 void findGabrielNeighbors(const std::vector<NearPoint>& candidates, Index* star, Index& count) {
   for (const NearPoint& candidate : candidates) {
     const bool blocked =
@@ -163,24 +152,22 @@ void findGabrielNeighbors(const std::vector<NearPoint>& candidates, Index* star,
 bool findVoronoiNeighbors(const std::vector<NearPoint>& candidates, const Eigen::Matrix3d& axes,
                           VoronoiCell& cell, Index* star, Index& count) {
   const double squared_reach = candidates.back().squared_distance;
-  // A cell that is larger ends there: sites beyond would be neighbours across a gap.
+  // Larger cells end at the reach: sites beyond would be neighbours across a gap.
   cell.reset(std::sqrt(squared_reach));
-  // Candidates steeper than this to the tangent plane are on another sheet [sine of the angle].
-  // With 1 a model has 2 self-intersections, with 0.7 two have 2 and 412.
+  // Candidates steeper than this over the tangent plane are on another sheet [sine].
   constexpr double max_candidate_slope = 0.85;
-  // In terms of the cosine.
-  const double least_fraction = 1.0 - max_candidate_slope * max_candidate_slope;
+  const double min_fraction = 1.0 - max_candidate_slope * max_candidate_slope;  // squared cosine
   for (const NearPoint& candidate : candidates) {
     if (candidate.squared_distance > 4.0 * cell.squaredRadius())
       break;
     const Eigen::Vector2d place(axes.col(1).dot(candidate.offset),
                                 axes.col(2).dot(candidate.offset));
     const double fraction = place.squaredNorm() / candidate.squared_distance;
-    if (fraction >= least_fraction)
+    if (fraction >= min_fraction)
       cell.cut(1.0 / std::sqrt(fraction) * place, candidate.point);
   }
   cell.forEachSite([&](Index site) {
-    // Round-off at corners may leave two edges of one site.
+    // Rounding at corners may leave two edges of one site.
     if (std::find(star, star + count, site) == star + count)
       star[count++] = site;
   });
@@ -198,8 +185,8 @@ void findStar(const std::vector<NearPoint>& candidates, std::size_t others, Voro
   star.tangent_plane = false;
   const bool complete = candidates.size() >= others;
   Eigen::Matrix3d axes;
-  bool is_line = true;  // or too few points, of which more are wanted as well
-  // Where the nearest are on a scan line, those of the next ones may be among some more.
+  bool is_line = true;  // also if there are too few points
+  // If the nearest points are on one scan line, more of them may reach the next.
   const std::size_t all = candidates.size() < kTangentNeighbors ? 0 : candidates.size();
   for (std::size_t span = 0; is_line && span < all;) {
     span = std::min(std::max(2 * span, std::size_t{kTangentNeighbors}), all);
@@ -214,8 +201,8 @@ void findStar(const std::vector<NearPoint>& candidates, std::size_t others, Voro
   std::sort(nodes, nodes + star.count);
 }
 
-/// Finds the stars of some nodes from lists in their order. Lists that are no longer than the one
-/// before change nothing.
+/// Finds the stars of some nodes from their lists. A list that is not longer than the node's last
+/// one changes nothing.
 void findStarsOf(const Indexed<Index>& nodes, const Positions& points, const NeighborLists& lists,
                  int threads, const FractionReport& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
@@ -233,7 +220,7 @@ void findStarsOf(const Indexed<Index>& nodes, const Positions& points, const Nei
   });
 }
 
-/// Asks for more neighbours of the points that want them.
+/// Searches for more neighbours of uncertified points.
 void searchForMore(const Positions& points, const NeighborSearch& search, int threads,
                    const FractionReport& report, Stars& stars) {
   const Index most = std::min(kMaxCandidates, static_cast<Index>(stars.size()) - 1);
@@ -254,14 +241,14 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
 }
 
 /// Normal of the plane through a point that most of its neighbours are near; 0 if there is none.
-/// Beside another sheet, the plane of the nearest is across both; this one is that of the point's
-/// own sheet.
+/// Beside another sheet, the plane of the nearest points lies across both; this one is that of the
+/// point's own sheet.
 Eigen::Vector3d sheetNormal(const std::vector<NearPoint>& candidates) {
-  // The planes to choose from are through two of the nearest, at an angle [sine].
+  // Candidates are planes through two of the nearest points, at a minimum angle [sine].
   constexpr std::size_t max_spanning = 8;
   constexpr double min_angle = 0.4;
   constexpr std::size_t max_voters = 20;
-  // Slope at which a vote is 0 [sine].
+  // From this slope on a neighbour has no vote [sine].
   constexpr double max_slope = 0.25;
   std::vector<Eigen::Vector3d> directions;
   for (std::size_t k = 0; k < std::min(max_voters, candidates.size()); ++k)
@@ -271,7 +258,7 @@ Eigen::Vector3d sheetNormal(const std::vector<NearPoint>& candidates) {
     return std::max(1.0 - slope * slope, 0.0);
   };
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
-  double most_votes = 0.0;
+  double max_votes = 0.0;
   for (std::size_t a = 0; a < std::min(max_spanning, directions.size()); ++a)
     for (std::size_t b = 0; b < a; ++b) {
       const Eigen::Vector3d normal = directions[a].cross(directions[b]);
@@ -279,13 +266,13 @@ Eigen::Vector3d sheetNormal(const std::vector<NearPoint>& candidates) {
       double votes = 0.0;
       for (std::size_t k = 0; k < directions.size() && sine >= min_angle; ++k)
         votes += vote(directions[k], normal / sine);
-      if (votes > most_votes) {
-        most_votes = votes;
+      if (votes > max_votes) {
+        max_votes = votes;
         best = normal / sine;
       }
     }
-  // Fitted to those that are near it, twice.
-  for (int round = 0; round < 2 && most_votes > 0.0; ++round) {
+  // Fits the plane to the neighbours near it, twice.
+  for (int round = 0; round < 2 && max_votes > 0.0; ++round) {
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
     for (const Eigen::Vector3d& direction : directions)
       moments += vote(direction, best) * direction * direction.transpose();
@@ -298,10 +285,8 @@ Eigen::Vector3d sheetNormal(const std::vector<NearPoint>& candidates) {
 
 /// Whether a candidate of point i is on another sheet: the planes of both are parallel, and apart.
 bool isOnOtherSheet(const Positions& normals, Index i, const NearPoint& candidate) {
-  // With a cosine of 0.8, two of 14 models change instead of one.
   constexpr double min_cosine = 0.9;
-  // With 0.5, a panel with a second layer over a part of it has 13 openings instead of 3 [sine].
-  constexpr double min_slope = 0.4;
+  constexpr double min_slope = 0.4;  // [sine]
   const Eigen::Vector3d normal = normals.col(i);
   const Eigen::Vector3d other = normals.col(candidate.point);
   const double height =
@@ -310,7 +295,7 @@ bool isOnOtherSheet(const Positions& normals, Index i, const NearPoint& candidat
          std::abs(normal.dot(other)) > min_cosine;
 }
 
-/// For each node the number of edges that both stars have, less those that only its own has.
+/// For each node the number of edges that both stars have, minus those that only its own has.
 Indexed<double> agreementOf(const Stars& stars, int threads) {
   Indexed<double> agreement(stars.size());
   forEachIndex(stars.size(), threads, {}, [&](Index i) {
@@ -320,7 +305,7 @@ Indexed<double> agreementOf(const Stars& stars, int threads) {
   return agreement;
 }
 
-/// The mean of values at a node and around it, over two rings. Made for values that are mostly 0.
+/// The mean of values at a node and its neighbours, twice. Fast if most values are 0.
 Indexed<double> meanAround(const Stars& stars, Indexed<double> values) {
   for (int ring = 0; ring < 2; ++ring) {
     const Indexed<double> before = values;
@@ -334,10 +319,10 @@ Indexed<double> meanAround(const Stars& stars, Indexed<double> values) {
   return values;
 }
 
-/// Minimum number of points of an area. With 32, the mug below keeps its intersecting triangles.
+/// Minimum number of points of an area.
 constexpr std::size_t kMinArea = 20;
 
-/// The nodes above a bound in areas of a minimum number of nodes.
+/// The nodes with values above a bound, in connected areas of at least `min_nodes` nodes.
 std::vector<Index> largeAreas(const Stars& stars, const Indexed<double>& values, double bound,
                               std::size_t min_nodes = kMinArea) {
   UnionFind areas(stars.size());
@@ -354,8 +339,8 @@ std::vector<Index> largeAreas(const Stars& stars, const Indexed<double>& values,
   return nodes;
 }
 
-/// Appends the nodes around some: those in their lists that meet a condition, those in the lists of
-/// these, and so on.
+/// Appends the nodes within some rings around the given ones: those in their lists that meet a
+/// condition, then those in the lists of these, and so on.
 template <typename Condition>
 void appendAround(const NeighborLists& lists, int rings, const Condition& meets,
                   std::vector<Index>& nodes) {
@@ -376,13 +361,13 @@ void appendAround(const NeighborLists& lists, int rings, const Condition& meets,
 struct SheetStars {
   Stars stars;
   Indexed<char> is_changed;  ///< a candidate was left out
-  /// Of the points around each node, the fraction whose nearest points are partly on another sheet.
+  /// Of the points around each node, the fraction with a nearest point on another sheet.
   Indexed<double> fraction_beside;
 };
 
 /// Finds the stars of an area without the candidates on other sheets.
 ///
-/// \param normals of the sheets; those of the area that are 0 are found.
+/// \param normals of the sheets; zero ones in the area are found.
 SheetStars findSheetStars(const Positions& points, const Stars& stars, const Indexed<Index>& area,
                           const NeighborSearch& search, int threads, Positions& normals) {
   const NeighborLists lists =
@@ -419,17 +404,16 @@ SheetStars findSheetStars(const Positions& points, const Stars& stars, const Ind
   return result;
 }
 
-/// Separates sheets that are nearer to each other than some two spacings, where ten neighbours span
-/// a plane across both. Where stars disagree over an area, they are found without the candidates on
-/// other sheets; if they agree more then, this is done around as well, for as long as they do.
+/// Separates sheets that are nearer to each other than two spacings, where ten neighbours span a
+/// plane across both. Where the stars of an area disagree, finds them without the candidates on
+/// other sheets. If they agree more then, the area grows, as long as they do.
 void separateSheets(const Positions& points, const Neighbors& neighbors, int threads,
                     Stars& stars) {
-  // Edges that only one of two stars has, and edges that more of them have without candidates on
-  // other sheets: means over an area. With 0.5 for either, a mug that was sampled evenly, with a
-  // wall of 1.9 spacings, keeps 7 intersecting triangles.
+  // Means over an area: edges of a star that the other star does not have, and the gain in edges
+  // that both have. Larger bounds do not separate walls of nearly two spacings.
   constexpr double max_one_sided = 0.3;
   constexpr double min_gain = 0.3;
-  // On creases the gain is by chance. Without a bound, four of 14 models change instead of one.
+  // With fewer points beside another sheet, as on creases, a gain is chance.
   constexpr double min_fraction_beside = 0.5;
   const Indexed<double> agreement = agreementOf(stars, threads);
   Indexed<double> one_sided(stars.size());
@@ -456,7 +440,7 @@ void separateSheets(const Positions& points, const Neighbors& neighbors, int thr
       if (sheets.fraction_beside[i] <= min_fraction_beside)
         gain_beside[i] = 0.0;
     const std::size_t before = taken.size();
-    // Beside a large area small ones are enough.
+    // Once there is a large area, small ones count, too.
     taken = largeAreas(stars, gain_beside, min_gain, before == 0 ? kMinArea : 1);
     appendAround(
         neighbors.lists, std::numeric_limits<int>::max(),
@@ -480,15 +464,15 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Execu
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "graph");
   findStarsOf(firstIndices(stars.size()), points, neighbors.lists, threads, report, stars);
-  if (neighbors.search)
+  if (neighbors.search) {
     searchForMore(points, neighbors.search, threads, report, stars);
-  if (neighbors.search)
     separateSheets(points, neighbors, threads, stars);
+  }
   return stars;
 }
 
 double oneSidedFraction(const Stars& stars, int threads, const FractionReport& report) {
-  // All entries, and the one-sided ones.
+  // The numbers of all entries, and of one-sided ones.
   const Eigen::Array2d sums = accumulate(
       stars.size(), threadCount(threads, stars.size()), Eigen::Array2d(Eigen::Array2d::Zero()),
       [&](Index i, Eigen::Array2d& sum) {

@@ -15,8 +15,8 @@ struct Star {
   Index candidates = -1;       ///< number of known nearest points; -1: not processed
   bool tangent_plane = false;  ///< the tangent plane is reliable
   bool wants_more = false;     ///< more candidates may help: the star is not certified
-  /// Of the point over its tangent plane [standard deviation of the nearest points in the plane, in
-  /// the direction in which it is smaller].
+  /// Height of the point over its tangent plane [standard deviation of the nearest points in the
+  /// plane, along the axis where it is smaller].
   float height = 0.0F;
 };
 
@@ -40,9 +40,9 @@ struct Stars {
 /// directions alike, too few points), the star is that of the Gabriel graph of the list (Gabriel
 /// and Sokal 1969).
 ///
-/// Where stars disagree over an area because of another sheet beside theirs, they are found without
-/// the candidates on that sheet, and kept if more edges are in the stars of both ends then. This
-/// needs a search. Not guaranteed for random samples of sheets closer than two spacings.
+/// Where the stars of an area disagree because of another sheet, they are found without the
+/// candidates on that sheet; the new stars stay if more edges are then in the stars of both ends.
+/// This needs a search. Not guaranteed for random samples of sheets closer than two spacings.
 ///
 /// \param points    3 x n, finite, distinct.
 /// \param neighbors of the nodes.
@@ -51,7 +51,7 @@ struct Stars {
 /// Cost: O(n c log c) for lists of c points.
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution);
 
-/// The fraction of the stars' entries that the other star does not have; 0 without any.
+/// The fraction of the entries of all stars that the other star does not have; 0 without entries.
 double oneSidedFraction(const Stars& stars, int threads = 1, const FractionReport& report = {});
 
 }  // namespace spherical_param::internal

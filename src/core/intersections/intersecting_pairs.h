@@ -11,8 +11,8 @@
 
 namespace spherical_param::internal {
 
-/// Beyond this number of intersecting triangles, a mesh of some triangles is not usable. Counting
-/// up to 3,000 takes no time. \see Surface::isUsable
+/// Maximum number of intersecting triangles of a usable mesh; at least 3,000, which are counted in
+/// no time. \see Surface::isUsable
 inline std::size_t mostOfUsable(std::size_t triangles) {
   return std::max<std::size_t>(triangles / 100, 3000);
 }
@@ -27,17 +27,12 @@ struct IntersectingPairs {
   }
 };
 
-/// Finds pairs of triangles that intersect, spread over the mesh, until more than a number of
-/// triangles intersect. The same for any number of threads.
-///
-/// \param most that number.
-/// \see findSelfIntersections
+/// Finds pairs of triangles that intersect, spread over the mesh, until more than `most` triangles
+/// intersect. The same for any number of threads. \see findSelfIntersections
 IntersectingPairs findPairsUpTo(std::size_t most, const Positions& points,
                                 const Triangles& triangles, const Execution& execution);
 
-/// The same among some triangles, as columns of all of them.
-///
-/// \param some ascending.
+/// The same among some of the triangles, in the numbers of all. \param some ascending.
 IntersectingPairs findPairsUpTo(std::size_t most, const Positions& points,
                                 const Triangles& triangles, const std::vector<Index>& some,
                                 const Execution& execution);

@@ -11,13 +11,13 @@
 
 namespace spherical_param::internal {
 
-/// A changing set of triangles of a mesh, for counts of intersections.
+/// A changing set of triangles of a mesh, which counts the intersections of a triangle with them.
 class LocalIntersections {
 public:
-  /// Begins with a set. Memory in proportion to the mesh is allocated only here.
+  /// Replaces the set. Only this allocates memory in proportion to the mesh.
   ///
   /// \param triangles number of triangles of the mesh.
-  /// \param faces     the set; faster if faces that follow each other are near.
+  /// \param faces     the set; faster if consecutive faces are near each other.
   void begin(std::size_t triangles, Indexed<Face> faces = {});
   /// Adds or changes a triangle.
   void set(const Face& face);
@@ -25,27 +25,27 @@ public:
   bool contains(Index triangle) const {
     return places_[triangle] >= 0 && is_in_[places_[triangle]] != 0;
   }
-  /// The set, and removed faces: they keep their place, beside those that were near.
+  /// The set, and removed faces, which keep their place.
   const std::vector<Face>& faces() const { return faces_; }
   const Face& face(Index triangle) const { return faces_[places_[triangle]]; }
-  /// Appends the triangles that intersect a triangle, without itself.
+  /// Appends the triangles that intersect another one, without itself.
   void appendIntersecting(const Face& face, std::vector<Index>& triangles) const;
-  /// Appends the triangles whose boxes overlap one.
+  /// Appends the triangles whose boxes overlap `box`.
   void appendWithin(const FloatBox& box, std::vector<Index>& triangles) const {
     boxes_.forEachOverlapping(
         box, 0, [](const FloatBox&) { return false; },
         [&](Index place) { triangles.push_back(faces_[place].triangle); });
   }
-  /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
-  /// beyond `most`.
+  /// Number of triangles that intersect another one, without itself and `without`; counting may
+  /// stop beyond `most`.
   int count(const Face& face, Index without, int most = std::numeric_limits<int>::max() - 1) const;
-  /// The same. \param exact_tests grows by the number of triangles that are not evidently apart.
+  /// The same. Adds the number of triangles that are not evidently apart to `exact_tests`.
   int count(const Face& face, Index without, int most, std::size_t& exact_tests) const;
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 
 private:
-  /// Calls work(face) for each triangle that intersects `face`, without itself and `without`, until
-  /// it returns false. Counts those that are not evidently apart.
+  /// Calls work(other) for each triangle that intersects `face`, without itself and `without`,
+  /// until it returns false.
   template <typename Work>
   void forEachIntersecting(const Face& face, Index without, std::size_t& exact_tests,
                            const Work& work) const {
@@ -67,9 +67,9 @@ private:
   }
 
   Indexed<Face> faces_;
-  Indexed<char> is_in_;    ///< whether each of them was not removed
-  BoxTree boxes_;          ///< of each of faces_; empty of removed ones
-  Indexed<Index> places_;  ///< of each triangle that is or was in the set in faces_, or -1
+  Indexed<char> is_in_;    ///< 0: the face was removed
+  BoxTree boxes_;          ///< of faces_; those of removed faces are empty
+  Indexed<Index> places_;  ///< place in faces_ of each triangle of the mesh, or -1
 };
 
 }  // namespace spherical_param::internal

@@ -19,7 +19,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -41,13 +40,13 @@ using internal::Indexed;
 using internal::Plane;
 using Pairs = std::vector<std::array<Index, 2>>;
 
-/// Items between two reports: where the mesh is a tangle, a block takes a tenth of a second.
+/// Items between two reports: in a tangled mesh, a block takes a tenth of a second.
 constexpr std::size_t kTangledItems = 8 * internal::kBlockSize;
 
-/// No limit of the triangles that are looked for.
+/// No limit of the number of intersecting triangles.
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-/// A mesh as the tests want it.
+/// A mesh, scaled for the tests.
 struct Mesh {
   const Positions& points;
   const Triangles& triangles;
@@ -79,11 +78,10 @@ public:
   TriangleTree(const Mesh& mesh, const Indexed<Index>& subset, int threads,
                const FractionReport& report);
 
-  /// Appends the intersecting pairs of the triangles in [begin, end) of the order, groups of the
-  /// tree, and later ones. Ends early when these are more than `most` triangles; returns whether it
-  /// did not.
+  /// Appends the intersecting pairs of the triangles in [begin, end) of the order, whole groups of
+  /// the tree, with later ones. Ends early and returns false beyond `most` intersecting triangles.
   bool findLaterPairs(Index begin, Index end, std::size_t most, Pairs& pairs) const;
-  /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
+  /// Appends the intersecting pairs of a triangle and those in the tree from place `first` on.
   void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
 private:
@@ -104,9 +102,9 @@ private:
   }
 
   const Mesh& mesh_;
-  Vector3d origin_;  ///< of the boxes in the tree: far from 0, floats are coarse
+  Vector3d origin_;  ///< of the boxes in the tree, since floats are coarse far from 0
   Indexed<Index> order_;
-  double large_;  ///< larger triangles are large: 8 times the mean size
+  double large_;  ///< size above which a triangle is large: 8 times the mean
   BoxTree tree_;
 };
 
@@ -127,11 +125,11 @@ TriangleTree::TriangleTree(const Mesh& mesh, const Indexed<Index>& subset, int t
                   [&](Index i) { return rounded(mesh.box(order_[i])); });
 }
 
-/// Orders the triangles by size, large ones first, then along a space-filling curve: among small
-/// ones, large ones would make large boxes of all above them.
+/// Orders the triangles by size, large ones first, then along a space-filling curve: a large
+/// triangle among small ones would enlarge all boxes above it.
 void TriangleTree::sort(const Indexed<Index>& subset, const Box& all, int threads) {
   const internal::MortonCurve curve(all.min(), all.max());
-  // A class of sizes for each factor of 8; the last one is not large.
+  // Sizes in classes of a factor of 8; the last one has those that are not large.
   const auto key_of = [&](Index i) {
     const Box box = mesh_.box(subset[i]);
     std::uint64_t size_class = 7;
@@ -146,7 +144,7 @@ void TriangleTree::sort(const Indexed<Index>& subset, const Box& all, int thread
 
 bool TriangleTree::findLaterPairs(Index begin, Index end, std::size_t most, Pairs& pairs) const {
   std::size_t next_count = most;
-  // What every test of one of a group's triangles needs.
+  // The faces and planes of a group, which all its tests share.
   Indexed<std::pair<Face, Plane>> own;
   for (Index first = begin; first < end; first += BoxGroup::kSize) {
     own.clear();
@@ -173,7 +171,7 @@ bool TriangleTree::findLaterPairs(Index begin, Index end, std::size_t most, Pair
 
 void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const {
   const Plane plane(face);
-  // A large triangle is likely to pass by a small box.
+  // The box of a large triangle overlaps many small ones that its plane does not meet.
   const auto passes = [&](const FloatBox& box) { return clears(plane, widened(box)); };
   tree_.forEachOverlapping(rounded(boxOf(face.corners)), first, passes,
                            [&](Index i) { appendIfIntersecting(face, plane, order_[i], pairs); });
@@ -199,14 +197,12 @@ internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Posi
   IntersectingPairs found;
   if (mesh.size() == 0)
     return found;
-  Indexed<Index> all(mesh.size());
-  std::iota(all.begin(), all.end(), Index{0});
   const int threads = threadCount(execution.threads, mesh.size());
   const FractionReport report = reportOf(execution, "intersections");
-  const TriangleTree tree(mesh, all, threads, report);
+  const TriangleTree tree(mesh, firstIndices(mesh.size()), threads, report);
   IndexSet intersecting(mesh.size());
   std::size_t count = 0;
-  // Rounds of at least 8 blocks of triangles: every step-th block, then those after them, ...
+  // Rounds of at least 8 blocks of triangles: every step-th block, then the blocks after these, ...
   const std::size_t blocks = (mesh.size() + kBlockSize - 1) / kBlockSize;
   const std::size_t step = most == kAll ? 1 : std::clamp<std::size_t>(blocks / 8, 1, 128);
   std::atomic<bool> is_complete{true};

@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A triangle, and its plane seen along an axis.
+/// A triangle, and its projection along an axis.
 class ExactTriangle {
 public:
   explicit ExactTriangle(const std::array<Vector3d, 3>& corners) : corners_(corners) {
-    // The widest view first: it needs no exact arithmetic.
+    // The largest projection first, which mostly needs no exact arithmetic.
     const auto& [a, b, c] = corners;
     (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis_);
     for (int i = 0; i < 3 && (turn_ = turn(a, b, c)) == 0; ++i)
@@ -29,8 +29,8 @@ public:
   int turn(const Vector3d& a, const Vector3d& b, const Vector3d& c) const {
     return orientation2d(flat(a), flat(b), flat(c));
   }
-  /// Whether a line along a side of one of them separates this triangle from a point, a segment or
-  /// a triangle, seen along the axis. In one plane, nothing else separates them.
+  /// Whether this triangle and a point, a segment or a triangle in its plane are disjoint: then a
+  /// line along a side of one of them separates them.
   template <std::size_t N>
   bool isApart(const std::array<Vector3d, N>& hull) const {
     for (std::size_t i = 0; i < 3; ++i)
@@ -84,7 +84,7 @@ bool segmentMeets(const SidedCorner& p, const SidedCorner& q, const ExactTriangl
 bool intersectExactly(const Face& face_a, const Face& face_b) {
   std::array<Vector3d, 3> of_a = face_a.corners;
   std::array<Vector3d, 3> of_b = face_b.corners;
-  // Common corners to the front, in the same order.
+  // Brings common corners to the front, in the same order.
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = common; j < 3; ++j)
@@ -100,9 +100,9 @@ bool intersectExactly(const Face& face_a, const Face& face_b) {
     return false;
   if (common == 3)
     return true;
-  if (common == 0 && a.isApart(of_b))  // cheap, and in a flat mesh nearly always so
+  if (common == 0 && a.isApart(of_b))  // cheap, and true for most pairs of a flat mesh
     return false;
-  if (common == 2)  // The cheap question first: in a flat mesh, neighbours lie on different sides.
+  if (common == 2)  // The cheap test first: in a flat mesh, neighbours lie on different sides.
     return a.turn(of_a[0], of_a[1], of_a[2]) * a.turn(of_a[0], of_a[1], of_b[2]) > 0 &&
            a.side(of_b[2]) == 0;
   std::array<int, 3> a_sides{};
@@ -113,8 +113,8 @@ bool intersectExactly(const Face& face_a, const Face& face_b) {
   }
   if (common == 0 && b_sides == std::array{0, 0, 0})
     return true;
-  // Where two triangles meet, a side of one of them meets the other: from a common corner, the
-  // opposite one.
+  // If two triangles meet, a side of one of them meets the other. With a common corner, it is the
+  // side opposite to that.
   for (std::size_t i = common; i < 3 - common; ++i) {
     const std::size_t next = (i + 1) % 3;
     if (segmentMeets({of_a[i], a_sides[i]}, {of_a[next], a_sides[next]}, b) ||

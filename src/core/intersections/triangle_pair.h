@@ -16,9 +16,9 @@ namespace spherical_param::internal {
 
 using Eigen::Vector3d;
 
-/// A triangle with the data of all tests.
+/// A triangle with what the tests need.
 struct Face {
-  std::array<Vector3d, 3> corners;  ///< scaled, see checkedScale()
+  std::array<Vector3d, 3> corners;  ///< scaled, \see scaleToUnit
   double size;                      ///< at least the longest side of the bounding box
   std::array<Index, 3> vertices;
   Index triangle;
@@ -59,9 +59,9 @@ struct Plane {
     const Vector3d u = face.corners[1] - origin;
     const Vector3d v = face.corners[2] - origin;
     normal = u.cross(v);
-    // A coordinate of the normal is wrong by up to 8 units of roundoff of |u| |v| (largest
-    // coordinates), and at most 2 |u| |v|; each of the three products of the value with a distance
-    // d thus by 8 + 2 * 4 units of |u| |v| d. The rest up to 64 covers higher powers.
+    // With |u| for the largest coordinate of u: a coordinate of the normal is at most 2 |u| |v| and
+    // has an error of up to 8 roundoffs of |u| |v|. So each of the three products of value() with a
+    // distance d has an error of 8 + 2 * 4 roundoffs of |u| |v| d. 64 also covers higher powers.
     error = 64.0 * kUnitRoundoff * largest(u) * largest(v) + kUnderflow;
   }
   /// Distance of p from the plane, times the length of the normal.
@@ -80,7 +80,7 @@ struct Plane {
 /// \param reach bound of the coordinates of differences of corners.
 inline bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a2,
                         const Vector3d& b1, const Vector3d& b2, double reach) {
-  // Any direction is valid, without error. This one is mostly normal to such a plane.
+  // Any direction may be tried. This one is mostly normal to such a plane.
   const Vector3d direction = (a1 - b1) + (a2 - b2);
   // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
   // distance.
@@ -113,8 +113,8 @@ inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
   const std::size_t of_a = common >> 8U & 0xffU;
   const std::size_t of_b = common >> 16U;
   const double reach = a.size + b.size;
-  // A triangle that names a vertex twice makes nonsense of the sums, but it has no area. Corners
-  // that are equal but not named alike do no harm: nothing separates them.
+  // The sums are wrong for a triangle that has a vertex twice, but it has no area. Equal corners
+  // with different indices do no harm: nothing separates them.
   constexpr std::array<std::size_t, 4> next{1, 2, 0, 1};
   switch (common & 0xffU) {
   case 0:

@@ -12,7 +12,7 @@ std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles, std::s
                                               int threads) {
   threads = threadCount(threads, vertex_count);
   const CornerTable corners(triangles, vertex_count, threads);
-  // The vertex after each in the boundary: where an edge has no triangle on its other side.
+  // The next vertex on the boundary: across an edge that has no triangle on its other side.
   Indexed<Index> next(vertex_count, -1);
   using Vertices = std::vector<Index>;
   forEachIndex<Vertices>(vertex_count, threads, {}, [&](Vertices& before, Index v) {

@@ -17,8 +17,8 @@ namespace spherical_param::internal {
 
 /// Checks that indices are in range and that a CornerTable can number the triangles.
 inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen::Index n) {
-  constexpr Eigen::Index most_triangles = Eigen::Index{1} << 30;
-  if (triangles.cols() > most_triangles)
+  constexpr Eigen::Index max_triangles = Eigen::Index{1} << 30;
+  if (triangles.cols() > max_triangles)
     throw InvalidInput(std::string(caller) + ": " + std::to_string(triangles.cols()) +
                        " triangles are more than 2^30; split the mesh");
   if (triangles.cols() == 0 || (triangles.minCoeff() >= 0 && triangles.maxCoeff() < n))
@@ -31,8 +31,7 @@ inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen
                      std::to_string(n) + "; indices start at 0");
 }
 
-/// The corners of a triangle after and before corner k. A table is faster than a remainder or a
-/// branch.
+/// The corners of a triangle after and before corner k. A table is faster than a remainder.
 inline Index nextCorner(Index k) {
   constexpr Index next[] = {1, 2, 0};
   return next[k];
@@ -56,7 +55,7 @@ public:
   /// \param triangles indices in [0, vertex_count), see checkTriangles().
   CornerTable(const Triangles& triangles, std::size_t vertex_count, int threads)
       : ends_(vertex_count + 1, 0),
-        // Not zeroed in advance by one thread for all.
+        // Not a vector, which one thread would fill with zeros first.
         corners_(new std::uint32_t[static_cast<std::size_t>(triangles.size())]) {
     forEachCornerOfRange(triangles, threads, vertex_count,
                          [&](Index v, std::uint32_t) { ++ends_[v + 1]; });
@@ -72,7 +71,7 @@ public:
 
   std::size_t countAt(Index v) const { return ends_[v + 1] - ends_[v]; }
 
-  /// Calls visit(triangle, k) for the triangles around v, whose corner k it is, ascending.
+  /// Calls visit(triangle, k) for the triangles with v as corner k, ascending.
   template <typename Visit>
   void forEachCorner(Index v, const Visit& visit) const {
     for (std::uint32_t i = ends_[v]; i < ends_[v + 1]; ++i)
@@ -81,7 +80,7 @@ public:
 
 private:
   /// Calls work(vertex, corner) for all corners. Each thread visits all corners and works on those
-  /// of its range of vertices, so that the order is that of one thread.
+  /// of its range of vertices, so the order at a vertex is that of the triangles.
   template <typename Work>
   static void forEachCornerOfRange(const Triangles& triangles, int threads,
                                    std::size_t vertex_count, const Work& work) {

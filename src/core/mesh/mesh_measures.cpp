@@ -10,7 +10,7 @@
 namespace spherical_param {
 namespace {
 
-/// Sums over a mesh, corners as seen from an origin.
+/// Sums over a mesh, with corners relative to an origin.
 struct SolidSums {
   double volume = 0.0;                               // 6 times the volume
   Eigen::Vector3d first = Eigen::Vector3d::Zero();   // 24 times the integral of x over the solid
@@ -36,9 +36,8 @@ SolidSums sumOverSolid(const Positions& points, const Triangles& triangles,
   SolidSums sums;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const Eigen::Matrix3d corners = cornersOf(points, triangles, t, origin);
-    // The tetrahedron of the triangle and the origin: its moments are those of its corners, over
-    // which x integrates to det / 24 of their sum, and x x^T to det / 120 of the products of each
-    // two of them, both with the origin as the fourth corner.
+    // Over the tetrahedron of the corners and the origin, x integrates to det / 24 times their sum,
+    // and x x^T to det / 120 times the sum of the products of any two of them.
     const double determinant = corners.col(0).dot(corners.col(1).cross(corners.col(2)));
     sums.volume += determinant;
     const Eigen::Vector3d sum = corners.rowwise().sum();
@@ -97,15 +96,14 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
 
   const double diagonal = (measures.box_max - measures.box_min).norm();
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // from the origin of the sums
-  // Below this the volume is rounding: a centroid would be the quotient of two errors.
+  // A smaller volume is rounding: the centroid would be the quotient of two errors.
   if (std::abs(measures.volume) > 1e-12 * diagonal * diagonal * diagonal)
     center = solid.first / (24.0 * measures.volume);
   else if (measures.area > 0.0)
     center = surface.first / (6.0 * measures.area);
   measures.centroid = origin + center;
 
-  // About the centroid, by the parallel axis theorem; written for any point, as the centroid of the
-  // surface is not that of the solid.
+  // By the parallel axis theorem, for any center: that of the surface is not that of the solid.
   const Eigen::Matrix3d mixed = solid.first / 24.0 * center.transpose();
   const Eigen::Matrix3d covariance = solid.second / 120.0 - mixed - mixed.transpose() +
                                      measures.volume * center * center.transpose();

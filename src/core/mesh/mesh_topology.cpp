@@ -21,12 +21,12 @@ bool isDegenerate(const Eigen::Matrix<Index, 3, 1>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// What is found at some of the vertices, or of the triangles.
+/// What is found at some of the vertices.
 struct Findings {
   std::size_t vertices = 0;
   std::size_t edges = 0;
   std::size_t nonmanifold_edges = 0;                 ///< edges with more than two triangles
-  std::size_t misoriented_edges = 0;                 ///< edges that both triangles traverse alike
+  std::size_t misoriented_edges = 0;                 ///< edges that two triangles run along alike
   std::vector<std::array<Index, 2>> boundary_edges;  ///< edges with one triangle
   std::vector<Index> nonmanifold_vertices;
   std::vector<Index> unused_vertices;
@@ -36,12 +36,12 @@ struct Findings {
     edges += more.edges;
     nonmanifold_edges += more.nonmanifold_edges;
     misoriented_edges += more.misoriented_edges;
-    boundary_edges.insert(boundary_edges.end(), more.boundary_edges.begin(),
-                          more.boundary_edges.end());
-    nonmanifold_vertices.insert(nonmanifold_vertices.end(), more.nonmanifold_vertices.begin(),
-                                more.nonmanifold_vertices.end());
-    unused_vertices.insert(unused_vertices.end(), more.unused_vertices.begin(),
-                           more.unused_vertices.end());
+    const auto append = [](const auto& from, auto& to) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(more.boundary_edges, boundary_edges);
+    append(more.nonmanifold_vertices, nonmanifold_vertices);
+    append(more.unused_vertices, unused_vertices);
   }
 };
 
@@ -52,16 +52,22 @@ struct Side {
   bool outgoing;   ///< the triangle runs from the vertex to the other end
 };
 
-/// Examines a vertex with any triangles: degenerate ones do not count.
-void examineSides(const Triangles& triangles, const CornerTable& corners, Index v,
-                  Findings& findings) {
+/// Examines a vertex and its triangles; degenerate ones do not count.
+void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
+                   Findings& findings) {
+  if (corners.countAt(v) == 0) {
+    findings.unused_vertices.push_back(v);
+    return;
+  }
+  ++findings.vertices;
   std::vector<Side> sides;
+  sides.reserve(2 * corners.countAt(v));
   Index count = 0;
   corners.forEachCorner(v, [&](Index t, Index k) {
     if (isDegenerate(triangles.col(t)))
       return;
-    sides.push_back({triangles((k + 1) % 3, t), count, true});
-    sides.push_back({triangles((k + 2) % 3, t), count, false});
+    sides.push_back({triangles(internal::nextCorner(k), t), count, true});
+    sides.push_back({triangles(internal::previousCorner(k), t), count, false});
     ++count;
   });
   // Triangles with a common side belong to the same fan.
@@ -91,53 +97,7 @@ void examineSides(const Triangles& triangles, const CornerTable& corners, Index 
     findings.nonmanifold_vertices.push_back(v);
 }
 
-/// Whether the triangles around a vertex are one closed fan, as nearly all are: those of a
-/// manifold. False, too, if there are more than a quick look is worth.
-bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v) {
-  constexpr std::size_t most = 32;
-  const std::size_t count = corners.countAt(v);
-  if (count > most)
-    return false;
-  std::array<std::array<Index, 2>, most> sides;  // opposite to v
-  const auto end = sides.begin() + static_cast<std::ptrdiff_t>(count);
-  auto side = sides.begin();
-  bool is_sound = true;
-  corners.forEachCorner(v, [&](Index t, Index k) {
-    is_sound = is_sound && !isDegenerate(triangles.col(t));
-    *side++ = {triangles(internal::nextCorner(k), t), triangles(internal::previousCorner(k), t)};
-  });
-  // Each side is continued by one that was not reached before, and the last one by the first.
-  for (side = sides.begin(); is_sound && side != end; ++side) {
-    auto next = end;  // the first one: not by a search, whose end nothing predicts
-    for (auto other = end; other != sides.begin();) {
-      --other;
-      next = (*other)[0] == (*side)[1] ? other : next;
-    }
-    is_sound = side + 1 == end ? next == sides.begin() : next > side && next != end;
-    if (is_sound && side + 1 != end)
-      std::swap(*(side + 1), *next);
-  }
-  return is_sound;
-}
-
-void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
-                   Findings& findings) {
-  if (corners.countAt(v) == 0) {
-    findings.unused_vertices.push_back(v);
-    return;
-  }
-  ++findings.vertices;
-  if (!isClosedFan(triangles, corners, v)) {
-    examineSides(triangles, corners, v, findings);
-    return;
-  }
-  // Each edge counts at the lower of its ends.
-  corners.forEachCorner(v, [&](Index t, Index k) {
-    findings.edges += v < triangles(internal::nextCorner(k), t) ? 1 : 0;
-  });
-}
-
-/// Number of connected components of some edges.
+/// Number of connected components of a set of edges.
 std::size_t countComponents(const std::vector<std::array<Index, 2>>& edges, std::size_t vertices) {
   if (edges.empty())
     return 0;

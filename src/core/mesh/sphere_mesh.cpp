@@ -11,11 +11,12 @@ namespace spherical_param::internal {
 SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads)
     : triangle_at_(vertex_count, -1), degree_(vertex_count, 0),
       triangle_count_(static_cast<Index>(triangles.cols())) {
-  // Room for all splits: entries must not move while changes are recorded.
   const auto m = columnCount(triangles);
-  vertices_.reserve(std::max(m, 2 * vertex_count));
-  neighbors_.reserve(std::max(m, 2 * vertex_count));
-  is_open_.reserve(std::max(m, 2 * vertex_count));
+  // Room for all splits: entries must not move while changes are recorded.
+  const std::size_t most = std::max(m, 2 * vertex_count);
+  vertices_.reserve(most);
+  neighbors_.reserve(most);
+  is_open_.reserve(most);
   vertices_.resize(m);
   neighbors_.resize(m);
   is_open_.resize(m, 0);
@@ -40,7 +41,7 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
   });
 }
 
-Index SphereMesh::takePlace() {
+Index SphereMesh::takeSlot() {
   journal_.set(triangle_count_, triangle_count_ + 1);
   if (free_ < 0) {
     vertices_.push_back({-1, -1, -1});
@@ -48,12 +49,12 @@ Index SphereMesh::takePlace() {
     is_open_.push_back(0);
     return size() - 1;
   }
-  const Index place = free_;
-  journal_.set(free_, vertex(place, 1));
-  return place;
+  const Index slot = free_;
+  journal_.set(free_, vertex(slot, 1));
+  return slot;
 }
 
-void SphereMesh::freePlace(Index t) {
+void SphereMesh::freeSlot(Index t) {
   journal_.set(triangle_count_, triangle_count_ - 1);
   setTriangle(t, {-1, free_, -1}, {-1, -1, -1});
   journal_.set(free_, t);
@@ -62,7 +63,7 @@ void SphereMesh::freePlace(Index t) {
 std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
   const std::array<Index, 3> v = vertices_[triangle];
   const std::array<Index, 3> n = neighbors_[triangle];
-  const std::array<Index, 3> parts{triangle, takePlace(), takePlace()};
+  const std::array<Index, 3> parts{triangle, takeSlot(), takeSlot()};
   for (std::size_t k = 0; k < 3; ++k)
     // Part k has the side opposite to corner k.
     setTriangle(parts[k], {new_vertex, v[(k + 1) % 3], v[(k + 2) % 3]},
@@ -106,8 +107,8 @@ Index SphereMesh::merge(Index v) {
   }
   journal_.set(triangle_at_[v], -1);
   journal_.set(degree_[v], 0);
-  freePlace(around[1]);
-  freePlace(around[2]);
+  freeSlot(around[1]);
+  freeSlot(around[2]);
   return t;
 }
 
@@ -173,20 +174,10 @@ Triangles SphereMesh::surfaceTriangles() const {
   return result;
 }
 
-std::size_t SphereMesh::surfaceCount() const {
-  std::size_t count = 0;
-  for (Index t = 0; t < size(); ++t)
-    count += isUsed(t) && !isOpen(t) ? 1 : 0;
-  return count;
-}
-
 std::size_t SphereMesh::surfaceVertexCount() const {
-  Indexed<char> is_used(degree_.size(), 0);
-  for (Index t = 0; t < size(); ++t)
-    if (isUsed(t) && !isOpen(t))
-      for (const Index v : vertices(t))
-        is_used[v] = 1;
-  return static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), char{1}));
+  std::vector<Index> used = verticesOf(surface());
+  sortUnique(used);
+  return used.size();
 }
 
 std::size_t SphereMesh::genus() const {

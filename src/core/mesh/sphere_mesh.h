@@ -10,18 +10,18 @@
 
 namespace spherical_param::internal {
 
-/// Where a triangle has one of its vertices or neighbours; without branches, which nothing
-/// predicts.
+/// The place of an entry among the three of a triangle; without branches, which would be
+/// mispredicted.
 inline int placeOf(Index entry, const std::array<Index, 3>& entries) {
   const int is_last = entries[2] == entry ? 1 : 0;
   return 2 * is_last + ((1 - is_last) & (entries[1] == entry ? 1 : 0));
 }
 
-/// Changes of indices, which can be undone. The indices must stay where they are.
+/// Records changes of indices so that they can be undone. The indices must not move in memory.
 class Journal {
 public:
-  /// Begins or continues to record changes, until commit() or rollBack(). Returns the number of
-  /// changes so far.
+  /// Begins to record changes, or continues, until commit() or rollBack(). Returns the number of
+  /// recorded changes.
   std::size_t record() {
     is_recording_ = true;
     return changes_.size();
@@ -30,7 +30,7 @@ public:
     is_recording_ = false;
     changes_.clear();
   }
-  /// Undoes the changes from a number on; 0 also ends the recording.
+  /// Undoes all but the first changes; 0 also ends the recording.
   void rollBack(std::size_t first = 0) {
     for (; changes_.size() > first; changes_.pop_back())
       *changes_.back().first = changes_.back().second;
@@ -48,18 +48,18 @@ private:
   std::vector<std::pair<Index*, Index>> changes_;  ///< indices and their old values
 };
 
-/// A closed triangle mesh with its adjacency: a sphere, a surface with handles, or several. Three
-/// moves keep it so: split a triangle in three by a new vertex, merge the three triangles around a
-/// vertex, flip an edge whose opposite vertices are not joined. Open triangles are over openings;
-/// the others are the surface. Changes can be rolled back exactly.
+/// A closed triangle mesh with its adjacency: a sphere, a surface with handles, or several pieces.
+/// Three moves keep it closed and manifold: split a triangle in three by a new vertex, merge the
+/// three triangles around a vertex, flip an edge whose opposite vertices are not joined. Open
+/// triangles are over openings; the others are the surface. Changes can be rolled back exactly.
 class SphereMesh {
 public:
-  /// \param triangles closed, manifold, consistently oriented, at least 4 vertices a piece,
+  /// \param triangles closed, manifold, consistently oriented, at least 4 vertices in each piece,
   ///                  indices in range; see MeshTopology::isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
   SphereMesh() = default;
 
-  /// Number of slots for triangles, used or freed by merge().
+  /// Number of slots for triangles, used or free.
   Index size() const { return vertices_.count(); }
   std::size_t slotCount() const { return vertices_.size(); }
   /// The corners of a triangle, counter-clockwise.
@@ -98,9 +98,9 @@ public:
   std::vector<Index> surface() const;
   /// Their corners.
   Triangles surfaceTriangles() const;
-  std::size_t surfaceCount() const;
+  std::size_t surfaceCount() const { return surface().size(); }
   bool hasOpen() const { return surfaceCount() < static_cast<std::size_t>(triangle_count_); }
-  /// The vertices of the surface.
+  /// Number of vertices of the surface.
   std::size_t surfaceVertexCount() const;
   /// Number of handles of a mesh in one piece.
   std::size_t genus() const;
@@ -109,8 +109,8 @@ public:
   Index triangleAt(Index vertex) const { return triangle_at_[vertex]; }
   Index degree(Index vertex) const { return degree_[vertex]; }
 
-  /// Whether is(triangle, corner) is true for one of the triangles around a vertex of the mesh,
-  /// asked counter-clockwise.
+  /// Whether is(triangle, corner) is true for a triangle around a vertex of the mesh. Asks
+  /// counter-clockwise and stops at the first.
   template <typename Predicate>
   bool anyAround(Index v, const Predicate& is) const {
     const Index first = triangleAt(v);
@@ -155,13 +155,13 @@ public:
   /// replaces its three, open if one of them is, or -1.
   Index merge(Index vertex);
 
-  /// Replaces the side opposite to `corner` by the other diagonal of its diamond, if that is free.
-  /// Returns whether it did. Corner 0 of both triangles is then the vertex that was at `corner`.
+  /// Replaces the side opposite to `corner` by the other diagonal of its diamond, if isFree().
+  /// Returns whether it was. Corner 0 of both triangles is then the vertex that was at `corner`.
   bool flip(Index triangle, int corner);
-  /// The same, where it is known to be free.
+  /// The same where the diamond is known to be free.
   void flipFree(Index triangle, int corner);
 
-  /// Where moves are recorded. While they are, splits need slots freed by merge().
+  /// Records moves. While it records, splits need slots freed by merge().
   Journal& journal() { return journal_; }
 
   /// The corners of all triangles, in the order of their slots.
@@ -183,8 +183,8 @@ private:
     journal_.set(around[static_cast<std::size_t>(placeOf(old_neighbor, around))], new_neighbor);
   }
   /// A free slot for a triangle, the last freed one first.
-  Index takePlace();
-  void freePlace(Index t);
+  Index takeSlot();
+  void freeSlot(Index t);
 
   Indexed<std::array<Index, 3>> vertices_;   ///< -1 and the next free slot, if free
   Indexed<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
@@ -196,19 +196,16 @@ private:
   Journal journal_;
 };
 
-/// Triangles around a vertex that follow each other, counter-clockwise.
+/// Consecutive triangles around a vertex, counter-clockwise.
 using Fan = std::vector<Index>;
 
-/// The fans at a vertex of the open triangles, or of those of the surface.
-///
-/// \param of_open which of them.
+/// The fans at a vertex: of open triangles, or of triangles of the surface.
 std::vector<Fan> fansAt(const SphereMesh& mesh, Index v, bool of_open);
 
 /// The triangles around a vertex, counter-clockwise.
 Fan trianglesAround(const SphereMesh& mesh, Index v);
 
-/// Whether the side of a diamond may be replaced by the other diagonal: its ends are not joined
-/// already.
+/// Whether the side of a diamond may be replaced by the other diagonal, whose ends are not joined.
 inline bool isFree(const SphereMesh& mesh, const SphereMesh::Diamond& at) {
   return at.c != at.d && !mesh.areJoined(at.c, at.d);
 }

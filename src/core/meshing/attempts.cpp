@@ -385,9 +385,9 @@ void finishMesh(const Positions& points, const Graph& graph, const Options& opti
     // The other half is for the smoothed points, which get an optimisation of their own.
     if (!is_last && execution.time_limit)
       *execution.time_limit /= 2.0;
-    MeshOptimization optimized =
-        optimizeMesh(at, std::move(part.mesh), graph,
-                     {places, is_last, options.seed, is_even_there, clock.share()}, execution);
+    MeshOptimization optimized = optimizeMesh(
+        at, std::move(part.mesh), graph,
+        {places, is_last, options.seed, is_even_there, clock.pointsFraction()}, execution);
     part.mesh = std::move(optimized.mesh);
     part.intersecting = std::move(optimized.intersecting);
     return optimized.report;

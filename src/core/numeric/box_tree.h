@@ -11,12 +11,11 @@
 
 namespace spherical_param::internal {
 
-/// A box rounded to floats: half the memory. Rounding keeps the order of numbers, so that boxes
-/// that overlap still do. By default it is empty and overlaps nothing.
+/// A box rounded to floats: half the memory. Rounding keeps the order of numbers, so boxes that
+/// overlap still overlap. An empty box, the default, overlaps nothing.
 using FloatBox = Eigen::AlignedBox3f;
 
-/// Eight boxes side by side, to compare a box with all of them at once. Unused ones overlap
-/// nothing.
+/// Eight boxes side by side, to compare a box with all of them at once. Unused ones are empty.
 struct BoxGroup {
   static constexpr Index kSize = 8;
   using Lanes = Eigen::Array<float, kSize, 3>;
@@ -31,12 +30,12 @@ struct BoxGroup {
   FloatBox at(Index lane) const {
     return {lower.row(lane).matrix().transpose(), upper.row(lane).matrix().transpose()};
   }
-  /// The box of all.
+  /// The box around all eight.
   FloatBox all() const {
     return {lower.colwise().minCoeff().matrix().transpose(),
             upper.colwise().maxCoeff().matrix().transpose()};
   }
-  /// Calls visit(lane) for each box that overlaps one.
+  /// Calls visit(lane) for each box that overlaps `box`.
   template <typename Visit>
   void forEachOverlapping(const FloatBox& box, const Visit& visit) const {
     const auto gap = [&](int k) {
@@ -49,7 +48,7 @@ struct BoxGroup {
   }
 };
 
-/// Boxes in a packed tree: box i of a level is that of the boxes 8 i ... 8 i + 7 of the level below
+/// Boxes in a packed tree: box i of a level holds the boxes 8 i ... 8 i + 7 of the level below
 /// (I. Kamel and C. Faloutsos, "On packing R-trees", 1993). Queries are fast if boxes that follow
 /// each other are near.
 class BoxTree {
@@ -69,13 +68,31 @@ public:
   }
 
   FloatBox at(Index i) const { return levels_[0][i / BoxGroup::kSize].at(i % BoxGroup::kSize); }
-  /// Changes a box, or adds one: its place is at most the number of boxes.
-  void set(Index i, const FloatBox& box);
+  /// Changes box i, or appends it: i is at most the number of boxes.
+  void set(Index i, const FloatBox& box) {
+    if (levels_.empty())
+      levels_.emplace_back();
+    FloatBox changed = box;
+    for (std::size_t level = 0;; ++level) {
+      Groups& groups = levels_[level];
+      const Index group = i / BoxGroup::kSize;
+      if (group == groups.count())
+        groups.emplace_back();
+      groups[group].set(i % BoxGroup::kSize, changed);
+      if (groups.size() == 1)
+        return;
+      i = group;
+      changed = groups[group].all();
+      if (level + 1 == levels_.size()) {
+        const FloatBox first = groups[0].all();
+        levels_.emplace_back(1).front().set(0, first);
+      }
+    }
+  }
 
-  /// Calls visit(i) for each box that overlaps one.
+  /// Calls visit(i) for each box i >= first that overlaps `box`.
   ///
-  /// \param first the first box of interest.
-  /// \param skips whether boxes within a box are of no interest.
+  /// \param skips (outer) returns whether the boxes within `outer` are left out.
   template <typename Skips, typename Visit>
   void forEachOverlapping(const FloatBox& box, Index first, const Skips& skips,
                           const Visit& visit) const {
@@ -84,7 +101,7 @@ public:
               [&](Index i, const FloatBox&) { visit(i); });
   }
 
-  /// Calls visit(i, j) for each pair of overlapping boxes, i < j, with i in a group.
+  /// Calls visit(i, j) for each pair of overlapping boxes, i < j, where i is in the group.
   template <typename Visit>
   void forEachPair(Index group, const Visit& visit) const {
     const BoxGroup& own = levels_[0][group];

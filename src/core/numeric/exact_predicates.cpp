@@ -17,7 +17,7 @@ namespace {
 /// Exponent of the largest power of two of which all coordinates are multiples.
 template <typename... Coordinates>
 int commonUnit(const Coordinates&... coordinates) {
-  // That of the last digit of a number, at least of denormal ones.
+  // The exponent of the last digit of x.
   const auto of_number = [](double x) {
     return x == 0.0 ? std::numeric_limits<double>::max_exponent
                     : std::max(std::ilogb(x) - 52, -1074);
@@ -25,8 +25,8 @@ int commonUnit(const Coordinates&... coordinates) {
   return std::min({coordinates.unaryExpr(of_number).minCoeff()...});
 }
 
-/// An integer of any size: digits to the base 2^27, lowest first. Each has its own sign, so that
-/// differences of numbers of few digits have few digits.
+/// An integer of any size: digits to the base 2^27, lowest first. Each digit has its own sign, so
+/// that differences of short numbers are short.
 class Integer {
 public:
   Integer() = default;  // 0
@@ -59,7 +59,7 @@ public:
     result.carry();
     return result;
   }
-  /// That of the last digit: the others amount to less than its unit.
+  /// The sign of the last digit: all others together are less than its unit.
   int sign() const { return digits_.empty() ? 0 : digits_.back() < 0 ? -1 : 1; }
 
 private:
@@ -133,7 +133,7 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
   const auto corner = [&](Eigen::Index t, int k) -> Eigen::Vector3d {
     return points.col(triangles(k, t));
   };
-  // About a point of the mesh, so that a far origin costs no digits.
+  // Relative to a point of the mesh: far from the origin, digits would be lost.
   const Eigen::Vector3d origin = corner(0, 0);
   double sum = 0.0;
   double lost = 0.0;  // by the roundings of the sum (A. Neumaier, 1974)
@@ -151,8 +151,8 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
     magnitude += a.lpNorm<1>() * b.lpNorm<1>() * c.lpNorm<1>();
   }
   sum += lost;
-  // A term has some 8 roundings, what was lost one for each of them, and the magnitude has as many;
-  // products that underflow lose less than the least number each.
+  // Each term has some 8 roundings, `lost` one for each term, and `magnitude` as many as the sum.
+  // A product that underflows loses less than the smallest number.
   const auto terms = static_cast<double>(count);
   const double bound = (16.0 + terms * terms * kUnitRoundoff) * 2.0 * kUnitRoundoff * magnitude +
                        16.0 * terms * std::numeric_limits<double>::denorm_min() * largest;

@@ -22,34 +22,34 @@ int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
                   const Eigen::Vector2d& d);
 
 /// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward.
-/// Plain arithmetic decides nearly always, else integers.
+/// Plain arithmetic nearly always decides; where it cannot, integers do.
 ///
 /// \param points    3 x n, finite.
 /// \param triangles 3 x m, closed.
 int volumeSign(const Positions& points, const Triangles& triangles);
 
-/// Whether all points lie exactly in one plane (or line, or point); true for fewer than four. A
-/// cloud that is flat but for rounding is not coplanar.
+/// Whether all points lie exactly in one plane (or line, or point); true for fewer than four.
+/// Points that rounding moved off a plane are not coplanar.
 ///
 /// \param points 3 x n, finite, of any magnitude.
-/// \throw InvalidInput if a coordinate of four points and more is not finite.
+/// \throw InvalidInput if there are at least four points and a coordinate is not finite.
 /// Cost: O(n); some microseconds for each point of an oblique plane.
 bool areCoplanar(const Positions& points);
 
 /// Half a unit in the last place of 1.
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
-/// Far more than what is lost where products underflow.
+/// A bound far above what products lose by underflow.
 constexpr double kUnderflow = 1e-300;
 
-/// Sign of a value that has an error; 0 if the error may be all of it.
+/// Sign of a value with an error; 0 if the error may exceed the value.
 inline int certainSign(double value, double error) {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Sign of the determinant | a, b, c | by plain arithmetic; 0 if that cannot tell.
+/// Sign of the determinant | a, b, c | by plain arithmetic; 0 if rounding may change it.
 ///
-/// \param relative_error of the determinant, its products and their factors, to the permanent.
+/// \param relative_error of the determinant [permanent].
 inline int plainSign(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                      double relative_error) {
   const double bc = b.x() * c.y();

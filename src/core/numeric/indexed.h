@@ -34,7 +34,7 @@ public:
   Index count() const { return static_cast<Index>(this->size()); }
 };
 
-/// Columns of a matrix, as the size of a list with an entry for each.
+/// Number of columns of a matrix, as the size of a list with an entry for each.
 template <typename Matrix>
 std::size_t columnCount(const Matrix& matrix) {
   return static_cast<std::size_t>(matrix.cols());
@@ -47,14 +47,14 @@ inline Indexed<Index> firstIndices(std::size_t n) {
   return indices;
 }
 
-/// Sorts values and leaves each once.
+/// Sorts values and removes repetitions.
 template <typename T>
 void sortUnique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// Leaves out the longest list, the first of those.
+/// Removes the longest list; of several the first.
 ///
 /// \param lists not empty.
 template <typename T>

@@ -12,10 +12,10 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Fills input_of_node, and finds for each input point the first one at its position. Equal points
-/// lie in one cell of the curve.
+/// Fills input_of_node. Returns the first input point at the position of each. Equal points lie in
+/// one cell of the curve.
 ///
-/// \param places all points; those of each cell are put into another order.
+/// \param places all points; those of each cell are reordered.
 Indexed<Index> mergeDuplicates(const Positions& points, Indexed<Place>& places,
                                Indexed<Index>& input_of_node) {
   const auto coordinates = [&](Index i) {
@@ -66,8 +66,8 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   threads = threadCount(threads, n);
   const Eigen::Vector3d low = points.rowwise().minCoeff();
   const Eigen::Vector3d high = points.rowwise().maxCoeff();
-  // An axis along which nothing differs may be so far away that it would not stay finite: 2^1000
-  // is.
+  // An axis along which all points are equal may be so far from 0 that scaling overflows: at most
+  // 2^1000 stays.
   int largest = 0;
   std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
   result.exponent = std::max(exponentOfExtent(low, high), largest - 1000);
@@ -110,7 +110,7 @@ OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
     throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +
                        " points are more than 2^30; split or downsample the cloud");
   checkFinite("reconstruct", points);
-  // Areas and volumes of larger clouds leave the range of double.
+  // Areas and volumes of larger clouds are beyond the range of double.
   if (points.size() > 0 && points.cwiseAbs().maxCoeff() > 1e100)
     throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
   OrderedPoints nodes = orderPoints(points, threads);

@@ -14,7 +14,7 @@ struct OrderedPoints {
   /// points stay distinct, and later products do not overflow.
   Positions points;
   int exponent = 0;
-  Indexed<Index> input_of_node;  ///< v entries, the first input point there
+  Indexed<Index> input_of_node;  ///< v entries, the first input point at each
 
   // Vertices are the same points, numbered by the first input point.
   Indexed<Index> vertex_of_node;   ///< v entries, a permutation
@@ -22,8 +22,8 @@ struct OrderedPoints {
   Indexed<Index> input_of_vertex;  ///< v entries, ascending
 };
 
-/// Finds the points that are not equal (-0 equals +0) and puts them in the order of mortonOrder(),
-/// at the cost of one sort.
+/// Finds the distinct points (-0 equals +0) and sorts them as mortonOrder() does, at the cost of
+/// one sort.
 ///
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);
@@ -34,7 +34,7 @@ OrderedPoints orderPoints(const Positions& points, int threads);
 /// distinct points.
 OrderedPoints orderCheckedPoints(const Positions& points, int threads);
 
-/// Checks that all points are finite. \throw InvalidInput in the name of a function
+/// \throw InvalidInput, which names the function, if a point is not finite.
 void checkFinite(const std::string& function, const Positions& points);
 
 /// The node of each input point.

@@ -28,7 +28,7 @@ constexpr int kMaxThreads = 1024;
 thread_local std::size_t thread_number = 0;
 thread_local bool does_task_of_team = false;
 
-/// Tells a forked process from its parent.
+/// The number by which a forked process differs from its parent.
 int processNumber() {
 #ifdef _WIN32
   return 0;  // there is no fork
@@ -49,9 +49,9 @@ private:
   std::size_t outer_;
 };
 
-/// Threads that sleep until the thread that owns them has a loop. The owner works, too, and waits
-/// only for tasks that have begun, not for threads that have not woken up: on a busy machine that
-/// can take longer than the loop.
+/// Threads that sleep until the thread that owns them has a loop. The owner works, too. It waits
+/// for tasks that have begun, but not for threads to wake up: on a busy machine that can take
+/// longer than the loop.
 class Team {
 public:
   Team() = default;
@@ -63,18 +63,17 @@ public:
       thread.join();
   }
 
-  /// Ends the threads without waiting for them. They need its memory, which stays.
+  /// Ends the threads without waiting for them. The memory that they use stays allocated.
   void abandon() {
     end();
     for (std::thread& thread : threads_)
       thread.detach();
   }
 
-  /// False in a forked process, which has the memory of the team but not its threads.
+  /// Whether this process started the threads. A forked one has their memory alone.
   bool isOfThisProcess() const { return process_ == processNumber(); }
 
-  /// Does all tasks, with `helpers` threads beside the calling one, or as many as the system
-  /// grants.
+  /// Does all tasks, with up to `helpers` threads beside the calling one.
   void run(std::size_t count, std::size_t helpers, const std::function<void(std::size_t)>& task) {
     try {
       while (threads_.size() < std::min(helpers, most_))
@@ -156,11 +155,11 @@ private:
   bool is_ending_ = false;
 };
 
-/// Leaves the memory of a parent's team alone: its end would wait for threads that do not exist.
+/// Does not destroy the team of a parent process: that would wait for threads that do not exist.
 struct EndTeam {
   void operator()(Team* team) const {
 #ifdef _WIN32
-    team->abandon();  // no thread ends while another one destroys what is local to it
+    team->abandon();  // no thread can end while another one destroys its thread_local objects
 #else
     if (team->isOfThisProcess())
       std::default_delete<Team>()(team);
@@ -192,7 +191,7 @@ int threadCount(int requested, std::size_t items, std::size_t threshold) {
   checkThreads(requested);
   if (items < threshold)
     return 1;
-  // Maximum number of threads a processor. More gain nothing, and each takes address space.
+  // More threads gain nothing, and each takes address space.
   constexpr int max_threads_of_processor = 4;
   const int processors = processorCount();
   return std::min({requested > 0 ? requested : processors, max_threads_of_processor * processors,

@@ -13,8 +13,7 @@ namespace spherical_param::internal {
 /// Items of a block. Work is distributed and summed by block: the same bits for any number of
 /// threads.
 inline constexpr std::size_t kBlockSize = 512;
-/// Below this many items several threads cost more than they gain. Ten times as many for short
-/// passes gained nothing on three models, beside busy processes or alone.
+/// Below this number of items several threads cost more than they gain.
 inline constexpr std::size_t kParallelThreshold = 2048;
 
 /// Minimum number of items between reports: each parallel region waits for its slowest thread.
@@ -36,18 +35,18 @@ void checkThreads(int requested);
 int threadCount(int requested, std::size_t items, std::size_t threshold = kParallelThreshold);
 
 /// Calls task(i) for each i in [0, count), on several threads. The calling thread does the first.
-/// An exception ends the work; tasks already begun are finished. A loop within a task of another
-/// one that has several threads has one thread.
+/// An exception ends the work; tasks already begun are finished. A loop within a task of a loop
+/// with several threads has one thread.
 void forEachTask(std::size_t count, int threads, const std::function<void(std::size_t)>& task);
 
 /// Number of the calling thread in the innermost loop that it works on, below the number of threads
 /// of that loop; 0 in the thread that called it.
 std::size_t threadNumber();
 
-/// Calls work(block, begin, end) for the blocks of [0, count), as forEachTask() does; with reports
-/// in a few dozen parallel regions, with the same blocks.
+/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. A report splits
+/// the loop into a few dozen parallel regions, of the same blocks.
 ///
-/// \param items_per_report minimum; lower for items that take long.
+/// \param items_per_report minimum number of items; lower for slow items.
 template <typename Work>
 void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work,
                   std::size_t items_per_report = kReportedItems) {
@@ -64,10 +63,7 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
   }
 }
 
-/// Calls work(memory, i) for each i in [0, count), on several threads. The memory is that of a
-/// block of items.
-///
-/// \param report receives the fraction done, as in forEachBlock().
+/// Calls work(memory, i) for each i in [0, count), on several threads. Each block has a memory.
 template <typename Memory, typename Work>
 void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -13,8 +13,8 @@ typename Derived::PlainObject timesPowerOfTwo(const Eigen::MatrixBase<Derived>& 
   return x.unaryExpr([exponent](double number) { return std::ldexp(number, exponent); });
 }
 
-/// A power of two that brings coordinates of at most this size to 1/2 ... 1: the exact predicates
-/// multiply three differences.
+/// The power of two that scales a coordinate of this size to 1/2 ... 1, so that products of three
+/// differences do not overflow.
 inline double scaleToUnit(double most) {
   int exponent = 0;
   std::frexp(most, &exponent);

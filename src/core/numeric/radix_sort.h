@@ -38,15 +38,13 @@ void radixSort(std::vector<Item>& items) {
   }
 }
 
-/// A thing of many, and its place in an order.
+/// An item and the key that it is sorted by.
 struct Place {
   std::uint64_t key;
   Index index;
 };
 
-/// The places of the things 0 ... count - 1 in the order of their keys; ties by index.
-///
-/// \param key_of returns the key of a thing.
+/// The items 0 ... count - 1 in the order of their keys, key_of(i); ties by index.
 template <typename KeyOf>
 Indexed<Place> sortedPlaces(std::size_t count, int threads, const KeyOf& key_of) {
   Indexed<Place> places(count);

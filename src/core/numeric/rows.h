@@ -29,7 +29,7 @@ private:
   Iterator begin_, end_;
 };
 
-/// Some entries of an array, one after the other.
+/// Consecutive entries of an array.
 template <typename T>
 class Row {
 public:
@@ -38,7 +38,7 @@ public:
   const T* begin() const { return begin_; }
   const T* end() const { return end_; }
   std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
-  /// The first `count` entries, or all of fewer.
+  /// The first `count` entries, or all if there are fewer.
   Row first(std::size_t count) const { return {begin_, begin_ + std::min(count, size())}; }
   bool contains(const T& value) const { return std::find(begin_, end_, value) != end_; }
 
@@ -47,7 +47,7 @@ private:
   const T* end_;
 };
 
-/// Rows of neighbours of the nodes 0 ... n - 1, one after the other.
+/// The neighbours of the nodes 0 ... n - 1, in compressed rows.
 struct NeighborRows {
   std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors`
   std::vector<Index> neighbors;
@@ -62,7 +62,7 @@ struct NeighborRows {
   Row<Index> row(Index node) const {
     return {neighbors.data() + begin(node), neighbors.data() + end(node)};
   }
-  /// The next node's row is what was appended to `neighbors`.
+  /// Ends a row: the next node has the neighbours appended since the last call.
   void endRow() { offsets.push_back(neighbors.size()); }
 };
 

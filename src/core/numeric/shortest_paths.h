@@ -10,12 +10,12 @@
 
 namespace spherical_param::internal {
 
-/// The nodes that are reached from one of them, by ascending length of the shortest path, then by
+/// The nodes that can be reached from a source, by ascending length of the shortest path, then by
 /// number (E. W. Dijkstra, 1959).
 ///
-/// \param lengths infinite before; receives those of the paths.
+/// \param lengths infinite before; receives the lengths of the paths.
 /// \param for_each_edge (v, go) calls go(w, length) for the edges from v, of lengths >= 0; go tells
-///                      whether the path through v is the shortest to w so far.
+///                      the caller whether the path through v is the shortest to w so far.
 template <typename ForEachEdge>
 std::vector<Index> shortestPaths(Index source, Indexed<double>& lengths,
                                  const ForEachEdge& for_each_edge) {

@@ -27,10 +27,8 @@ std::vector<Index> orderOf(const Indexed<Place>& places) {
   return order;
 }
 
-/// Sorts points in one cell along the curve of their own box, and so on: the sides of
-/// the box lie in different cells, so that each cluster is smaller than the one before it.
-///
-/// Without, 200,000 points within 1e-6 on the sphere take 25 times as long to insert.
+/// Sorts points of one cell along the curve of their own box, recursively. Opposite sides of the
+/// box lie in different cells, so each cluster is smaller than the one before it.
 void refineClusters(const Positions& points, Place* begin, Place* end) {
   constexpr std::ptrdiff_t few = 16;
   for (Place* rest = begin; begin != end; begin = rest) {
@@ -82,8 +80,9 @@ std::vector<Index> mortonOrder(const Positions& points) {
 
 std::vector<Index> insertionOrder(const Positions& directions) {
   const MortonCurve curve(Eigen::Vector3d::Constant(-1.0), Eigen::Vector3d::Constant(1.0));
-  // The first round has at most about 128 points, and each has 2^3 - 1 times as many as all before
-  // it: less than 16 rounds, as keys are numbers of 63 bits, of which 60 are used.
+  // The first round has at most about 128 points. Each later one has 2^3 - 1 times as many points
+  // as all before it. So there are fewer than 16 rounds, which fit in the 4 bits above the
+  // curve's 60.
   constexpr unsigned growth_bits = 3;
   unsigned last_round = 0;
   for (Eigen::Index size = directions.cols(); size > 128; size >>= growth_bits)

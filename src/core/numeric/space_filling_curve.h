@@ -29,9 +29,8 @@ std::vector<Index> mortonOrder(const Positions& points);
 /// Order for fast insertion of points on the sphere: rounds of growing size, each a random sample
 /// of the remaining points (biased randomised insertion order: N. Amenta, S. Choi and G. Rote,
 /// "Incremental constructions con BRIO", 2003) along a Morton curve, so that consecutive points are
-/// near. The curve is refined where points are dense, to the last bit of the coordinates. The same
-/// on every platform. Along a Hilbert curve over the unfolded octahedron the insertion takes as
-/// long.
+/// near. Where points are dense, the curve is refined to the last bit of the coordinates. The same
+/// on every platform.
 ///
 /// \param directions 3 x n, unit vectors up to rounding.
 std::vector<Index> insertionOrder(const Positions& directions);

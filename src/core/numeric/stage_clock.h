@@ -14,11 +14,11 @@
 
 namespace spherical_param::internal {
 
-/// Of the time that is left for a mesh: filling takes far less than the optimisation.
+/// Fraction of the remaining time that the optimisation leaves for the fill.
 inline constexpr double kTimeForFill = 0.2;
 
-/// Times the stages, reports their beginning and end, and shares the time limit between parts and
-/// stages. No stage before the first mesh of a part has a limit.
+/// Times the stages, reports their beginning and end, and divides the time limit among parts and
+/// stages. Stages before the first mesh of a part have no limit.
 class StageClock {
 public:
   /// \param user how the caller wants the work done; must outlive the clock.
@@ -50,21 +50,23 @@ public:
     report(0.0);
   }
 
-  /// Says what the part is. \see Progress::remark
+  /// Reports a remark on the part. \see Progress::remark
   void remark(std::string_view text) {
     remark_ = text;
     report(0.0);
     remark_ = {};
   }
 
-  /// Keeps a fraction of the time that is left for the stages after the next call.
+  /// Keeps a fraction of the remaining time for the stages after the next call.
   void keep(double fraction) {
     kept_ = 0.0;
     kept_ = fraction * remaining().value_or(0.0);
   }
 
-  /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
-  /// points_fraction of all points.
+  /// Begins a part.
+  ///
+  /// \param fraction        of the remaining points, and so of the remaining time.
+  /// \param points_fraction of all points.
   void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
     before_ += part > 0 ? fraction_ : 0.0;
     part_ = part;
@@ -78,13 +80,13 @@ public:
     part_begin_ = Clock::now();
   }
 
-  /// Ends the time of the part: it gets the first mesh.
+  /// Ends the time of the part, which then gets its first mesh.
   void endPart() { part_left_ = TimeLeft(0.0); }
 
-  /// The part's share of the points of all parts.
-  double share() const { return fraction_; }
-  /// Time left for the part [s], minus what is kept, and a reserve for the check of the mesh: half
-  /// of the time until the embedding, more than it takes.
+  /// The part's fraction of the points of all parts.
+  double pointsFraction() const { return fraction_; }
+  /// Time left for the part [s], without what is kept and a reserve for the check of the mesh: half
+  /// of the time that neighbours and graph took.
   std::optional<double> remaining() const {
     double kept = kept_;
     for (const StageTime& time : times_)
@@ -124,7 +126,7 @@ private:
     stage_ = nullptr;
   }
 
-  /// \see Progress::done. What a stage takes is the median of 20 clouds.
+  /// \see Progress::done. The fractions of the work are typical ones.
   double done(double fraction) {
     struct Row {
       std::string_view stage;
@@ -161,10 +163,10 @@ private:
   std::size_t part_ = 0;
   std::size_t parts_ = 1;
   std::vector<StageTime> times_;
-  static constexpr double kBeforeParts = 0.33;  ///< what is done of the work before the first part
-  double before_ = 0.0;                         ///< of the points, those of the parts before
+  static constexpr double kBeforeParts = 0.33;  ///< fraction of the work before the first part
+  double before_ = 0.0;                         ///< fraction of the points in earlier parts
   double done_ = 0.0;
-  std::string_view remark_;  ///< empty, but while it is said
+  std::string_view remark_;  ///< empty except during remark()
 };
 
 }  // namespace spherical_param::internal

@@ -6,7 +6,7 @@
 
 namespace spherical_param::internal {
 
-/// Time left of a limit that begins at construction.
+/// The time left of a limit that starts at construction.
 class TimeLeft {
 public:
   /// \param limit [s]; unset: no limit.

@@ -39,7 +39,7 @@ private:
   Indexed<Index> parent_;
 };
 
-/// The sets of a union, each named by its representative.
+/// The sets of a UnionFind, each named by its representative.
 struct Partition {
   explicit Partition(UnionFind& sets) : of(sets.size()), sizes(sets.size(), 0) {
     for (Index i = 0; i < of.count(); ++i) {
@@ -52,7 +52,8 @@ struct Partition {
   Indexed<std::size_t> sizes;  ///< number of elements of each set; 0 elsewhere
 };
 
-/// The vertices of the pieces of a mesh; one in no triangle is a piece by itself.
+/// The connected pieces of a mesh, as sets of vertices; a vertex in no triangle is a piece by
+/// itself.
 inline UnionFind piecesOf(const Triangles& triangles, std::size_t vertices) {
   UnionFind pieces(vertices);
   for (const auto& t : triangles.colwise()) {

@@ -113,7 +113,7 @@ private:
   /// between two open triangles, or open clouds of several views keep self-intersections.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
-    if (openings->isRim(v, w))
+    if (openings->isBoundary(v, w))
       return 0.0;
     const double price = (0.8 + 2.0 * mu) * (p - q).norm();
     return are_both_open ? 0.5 * price : price;

@@ -29,7 +29,7 @@ public:
   }
   ~Qhull() {
     qh_freeqhull(&state_, !qh_ALL);
-    // Tables that qhull itself forgets if there was no memory for both.
+    // qhull itself does not free these tables if there was no memory for both.
     if (state_.qhmem.LASTsize == 0) {
       std::free(state_.qhmem.freelists);
       std::free(state_.qhmem.sizetable);

@@ -27,9 +27,8 @@ Positions projectFromCentroid(const Positions& points) {
 }
 
 bool isCollapsed(const Eigen::Vector3d& centroid) {
-  // Above this length of the mean direction an embedding has collapsed. Unfolded embeddings have
-  // means below 0.5, or up to 0.9 after slipping along a tube towards one end. Without a bound the
-  // springer on nearest neighbours has 160,719 self-intersections instead of 0.
+  // The mean direction of a collapsed embedding is longer. Unfolded embeddings have means below
+  // 0.5, or up to 0.9 after slipping along a tube towards one end.
   constexpr double max_centroid = 0.95;
   return !(centroid.norm() <= max_centroid);
 }

@@ -91,7 +91,7 @@ void EmbeddingEnergy::multiplyHessian(const Positions& u, const Positions& x,
 }
 
 SparseRows EmbeddingEnergy::laplacian(const Positions& u) const {
-  // Stretching an edge is twice as stiff as turning it.
+  // The mean of 1 for turning an edge and 2 for stretching it.
   constexpr double stiffness = 1.5;
   std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(graph_.neighbors.size() + graph_.size());
@@ -104,7 +104,7 @@ SparseRows EmbeddingEnergy::laplacian(const Positions& u) const {
       entries.emplace_back(i, j, -stiffness * w);
       sum += w * (stiffness + squared / 2.0);
     }
-    // A node whose neighbours are all at its own place has no stiffness: it stays.
+    // A node with all neighbours at its own place has no stiffness, and does not move.
     entries.emplace_back(i, i, sum > 0.0 ? sum : 1.0);
   }
   SparseRows matrix(u.cols(), u.cols());

@@ -11,14 +11,14 @@ double dot(const Positions& x, const Positions& y) {
   return x.cwiseProduct(y).sum();
 }
 
-/// Takes vectors to the tangent planes of the directions.
+/// Projects vectors onto the tangent planes of the directions.
 void project(const Positions& directions, Positions& x) {
-  // Evaluated before x changes: what is left of a normal part would spoil the products.
+  // Evaluated before x changes.
   const Eigen::RowVectorXd heights = directions.cwiseProduct(x).colwise().sum();
   x -= directions * heights.asDiagonal();
 }
 
-/// An embedding with what Newton's method knows of it.
+/// An embedding with its energy and derivatives.
 struct Iterate {
   Positions directions;
   Positions gradient;
@@ -26,20 +26,17 @@ struct Iterate {
   double value = 0.0;  ///< of the energy
 };
 
-/// The first iterate along a step, halved again and again, with sufficient decrease (L. Armijo,
-/// 1966); where the energy no longer changes beyond rounding, the residual has to fall instead.
+/// Halves a step until the energy decreases sufficiently (L. Armijo, 1966). If rounding hides the
+/// change of the energy, the residual has to fall instead.
 ///
-/// \param expected decrease of the energy by the whole step, to first order.
-/// \return nothing if rounding leaves no such step.
+/// \param expected change of the energy by the whole step, to first order.
+/// \return the next iterate; nothing if rounding leaves no such step.
 std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& current,
                                   const Positions& step, double expected) {
   constexpr int max_halvings = 40;
   // A longer step could jump over the barrier to the collapsed state, whose energy is 0 [rad].
-  // Without a bound, 9 of the 52 meshes of multilevel_embedding.cpp intersect themselves instead
-  // of 8.
   constexpr double max_step = 0.3;
-  // The residual must fall by this factor where rounding hides the change of the energy. With 1,
-  // the self-intersections of two spheres grow by a seventh.
+  // The residual must fall by this factor if rounding hides the change of the energy.
   constexpr double max_residual_ratio = 0.9;
   const double rounding = 1e-14 * std::abs(current.value) + 1e-300;
   double fraction = std::min(1.0, max_step / step.colwise().norm().maxCoeff());
@@ -66,8 +63,8 @@ std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& 
 /// negative curvature (T. Steihaug, 1983). The result is always a descent direction.
 ///
 /// \param reduction   of the residual, in the norm of the preconditioner.
-/// \param refinements V-cycles afterwards, each on the remaining residual.
-/// \param iterations  is increased by those that are done.
+/// \param refinements number of V-cycles afterwards, each on the remaining residual.
+/// \param iterations  grows by the number of iterations.
 Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& iterate,
                              const LaplacianCycle& preconditioner, double reduction,
                              int refinements, int& iterations) {
@@ -77,7 +74,7 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
     project(u, x);
     return x;
   };
-  // No cloud needs as many: they end systems that never converge.
+  // Ends systems that do not converge.
   constexpr int max_linear_iterations = 200;
   Positions x = Positions::Zero(3, u.cols());
   Positions residual = -iterate.gradient;
@@ -113,11 +110,9 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
 std::vector<double> minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
                                      const NewtonOptions& options, Positions& directions,
                                      LevelReport& report) {
-  // Conjugate gradients measure their progress by energy, to which small parts of the embedding add
-  // nothing. Where the relative residual lags behind the absolute one by this factor, each step is
-  // refined by four V-cycles, which treat all scales alike. With any lag, 10 of the 52
-  // meshes intersect themselves; without refinement, self-intersections of two spheres grow by a
-  // fifth.
+  // Conjugate gradients measure their progress by energy, to which small parts of the embedding
+  // hardly contribute. If the relative residual lags behind the absolute one by this factor, four
+  // V-cycles refine each step, since they treat all scales alike.
   constexpr double max_lag = 4.0;
   constexpr int max_iterations = 100;
   std::vector<double> residuals;

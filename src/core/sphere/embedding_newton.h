@@ -13,10 +13,10 @@ namespace spherical_param::internal {
 
 /// When the solution ends.
 struct NewtonOptions {
-  double relative_tolerance;        ///< of the residual in units of each node's mean edge
+  double relative_tolerance;        ///< of the relative residual, \see EmbeddingEnergy::Residual
   std::optional<double> tolerance;  ///< of the mean tangential Laplacian [radius]
   FractionReport report = {};       ///< called with 0 before each step
-  /// Whether the work is given up because the embedding collapses; may be empty.
+  /// Whether an embedding collapses, which ends the work; may be empty.
   std::function<bool(const Positions&)> collapses = nullptr;
 };
 
@@ -25,8 +25,8 @@ struct NewtonOptions {
 /// tolerances, if rounding leaves no step that lowers energy or residual, or if the embedding
 /// collapses.
 ///
-/// \param report receives the work.
-/// \return the absolute residuals, before each step and at the end.
+/// \param report receives the numbers of iterations and the residual.
+/// \return the absolute residuals before each step and at the end.
 std::vector<double> minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
                                      const NewtonOptions& options, Positions& directions,
                                      LevelReport& report);

@@ -4,7 +4,6 @@
 #include "progress.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,8 +13,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
-/// turning, scaling or renumbering the points changes them only where rounding decides.
+/// Numbers that look random, but depend only on the lengths of the edges of each node: moving,
+/// turning, scaling or renumbering the points changes them only by rounding.
 Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
   Indexed<double> keys(graph.size());
   forEachIndex(graph.size(), threads, {}, [&](Index i) {
@@ -23,66 +22,35 @@ Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int thread
     keys[i] = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   });
   const double sum = std::accumulate(keys.begin(), keys.end(), 0.0);
-  // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
-  // it elsewhere. More turns would look more random, but let the rounding of the points decide more
-  // often.
+  // About one turn over the spread of the lengths; each seed begins it elsewhere. With more turns,
+  // the rounding of the points would decide more often.
   constexpr double turns = 2.0;
   constexpr double golden_ratio = 0.6180339887498949;
   const double factor = turns * static_cast<double>(graph.size()) / sum;
   for (double& key : keys) {
     const double turn = factor * key + golden_ratio * seed;
-    // A length that is NaN gives a key that is NaN, which no comparison orders.
+    // NaN, from lengths that are not finite, cannot be sorted.
     key = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
   }
   return keys;
 }
 
-/// A maximal independent set, in ascending order: the one that takes each node in turn, by
-/// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
-/// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
-/// the same set whatever the order and the threads.
-Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
-                              const FractionReport& report) {
-  const std::size_t n = graph.size();
-  const Indexed<double> keys = scrambledKeys(graph, seed, threads);
-  reportFraction(report, 0.0);
-  enum State : unsigned char { Open, Out, Taken };
-  Indexed<std::atomic<unsigned char>> states(n);
-  const auto judge = [&](Index i) {
-    if (states[i].load(std::memory_order_relaxed) != Open)
-      return true;
-    bool waits = false;
-    for (const Index j : graph.row(i)) {
-      if (keys[j] > keys[i] || (keys[j] == keys[i] && j > i))
-        continue;
-      const unsigned char state = states[j].load(std::memory_order_relaxed);
-      if (state == Taken) {
-        states[i].store(Out, std::memory_order_relaxed);
-        return true;
-      }
-      waits = waits || state == Open;
-    }
-    if (waits)
-      return false;
-    states[i].store(Taken, std::memory_order_relaxed);
-    for (const Index j : graph.row(i))
-      states[j].store(Out, std::memory_order_relaxed);
-    return true;
-  };
-  std::vector<Index> waiting = collectBlocks<Index>(
-      n, threads, report, [&](Index begin, Index end, std::vector<Index>& nodes) {
-        for (const Index i : NumberRange(begin, end))
-          if (!judge(i))
-            nodes.push_back(i);
-      });
-  while (!waiting.empty()) {
-    waiting.erase(std::remove_if(waiting.begin(), waiting.end(), judge), waiting.end());
-    reportFraction(report, 0.0);
-  }
+/// A maximal independent set, in ascending order: takes each node by ascending key, unless a
+/// neighbour was taken before it.
+Indexed<Index> independentSet(const Graph& graph, const Indexed<double>& keys) {
+  Indexed<Index> order = firstIndices(graph.size());
+  std::sort(order.begin(), order.end(),
+            [&](Index i, Index j) { return std::pair(keys[i], i) < std::pair(keys[j], j); });
+  Indexed<char> is_beside(graph.size(), 0);  // a taken node
   Indexed<Index> taken;
-  for (const Index i : graph.nodes())
-    if (states[i].load(std::memory_order_relaxed) == Taken)
-      taken.push_back(i);
+  for (const Index i : order) {
+    if (is_beside[i] != 0)
+      continue;
+    taken.push_back(i);
+    for (const Index j : graph.row(i))
+      is_beside[j] = 1;
+  }
+  std::sort(taken.begin(), taken.end());
   return taken;
 }
 
@@ -92,10 +60,10 @@ struct Aggregates {
   Indexed<double> distances;  ///< n entries, length of the path to the own seed
 
   /// Gives a node the seed of a neighbour if the path through it is shorter; ties go to the lower
-  /// seed. \return whether it is
-  bool join(Index node, const Aggregates& of, Index neighbor, double length) {
-    const double distance = of.distances[neighbor] + length;
-    const Index seed = of.of_node[neighbor];
+  /// seed. \return whether the node has changed
+  bool join(Index node, Index neighbor, double length) {
+    const double distance = distances[neighbor] + length;
+    const Index seed = of_node[neighbor];
     if (!(distance < distances[node] || (distance == distances[node] && seed < of_node[node])))
       return false;
     distances[node] = distance;
@@ -104,35 +72,19 @@ struct Aggregates {
   }
 };
 
-/// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
-/// and then all nodes have been looked at, only few change, and those next to them.
-Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int threads,
-                         const FractionReport& report) {
-  const std::size_t n = graph.size();
-  Aggregates near{Indexed<Index>(n, -1),
-                  Indexed<double>(n, std::numeric_limits<double>::infinity())};
+/// Shortest paths from all seeds at once. A simple queue is fast, since no node is far from a seed.
+Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds) {
+  Aggregates cells{Indexed<Index>(graph.size(), -1),
+                   Indexed<double>(graph.size(), std::numeric_limits<double>::infinity())};
   for (const Index s : indicesOf(seeds)) {
-    near.of_node[seeds[s]] = s;
-    near.distances[seeds[s]] = 0.0;
-    for (const std::size_t e : graph.entries(seeds[s]))
-      near.join(graph.neighbors[e], near, seeds[s], graph.lengths[e]);
+    cells.of_node[seeds[s]] = s;
+    cells.distances[seeds[s]] = 0.0;
   }
-  reportFraction(report, 0.0);
-  Aggregates cells = near;
-  std::vector<Index> queue = collectBlocks<Index>(
-      n, threads, report, [&](Index begin, Index end, std::vector<Index>& changed) {
-        for (const Index i : NumberRange(begin, end)) {
-          bool changes = false;
-          for (const std::size_t e : graph.entries(i))
-            changes = cells.join(i, near, graph.neighbors[e], graph.lengths[e]) || changes;
-          if (changes)
-            changed.push_back(i);
-        }
-      });
+  std::vector<Index> queue = seeds;
   for (std::size_t head = 0; head < queue.size(); ++head)
     for (const std::size_t e : graph.entries(queue[head])) {
       const Index i = graph.neighbors[e];
-      if (cells.join(i, cells, queue[head], graph.lengths[e]))
+      if (cells.join(i, queue[head], graph.lengths[e]))
         queue.push_back(i);
     }
   return cells;
@@ -159,8 +111,8 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
             continue;
           if (shortest[other] == infinity)
             touched.push_back(other);
-          // The sum of the distances first: the same bits from both sides of the edge. It stays a
-          // length where it is beyond the range of double.
+          // The distances are added first: the sum has the same bits from both sides of the edge.
+          // It stays finite.
           const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
           shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
         }
@@ -174,7 +126,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
   });
 }
 
-/// Adds an entry to a row that is sorted by seed; of two with the same seed the shorter path stays.
+/// Adds an entry to a row that is sorted by seed; of two paths to a seed the shorter one stays.
 void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double length) {
   auto place = row.end();
   while (place != row.begin() && (place - 1)->first > seed)
@@ -229,12 +181,13 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
     const int threads = threadCount(execution.threads, finest->size());
-    const Indexed<Index> seeds = independentSet(*finest, seed, threads, report);
-    // Fewer than 4 nodes cannot be spread over a sphere. Levels that keep more than half could be
-    // as many as a hub has neighbours.
+    const Indexed<Index> seeds = independentSet(*finest, scrambledKeys(*finest, seed, threads));
+    reportFraction(report, 0.0);
+    // Fewer than 4 nodes cannot be spread over a sphere. If levels kept more than half of the
+    // nodes, a hub could have as many levels as neighbours.
     if (seeds.size() < 4 || 2 * seeds.size() > finest->size())
       break;
-    const Aggregates cells = geodesicCells(*finest, seeds, threads, report);
+    const Aggregates cells = geodesicCells(*finest, seeds);
     HierarchyLevel& level = hierarchy.levels.emplace_back();
     level.graph = coarseGraph(*finest, cells, seeds.size(), threads, report);
     interpolation(*finest, cells, seeds.size(), threads, report).swap(level.prolongation);

@@ -16,15 +16,15 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
 struct HierarchyLevel {
   Graph graph;  ///< connected; lengths are those of shortest paths
   /// Nodes of the finer graph x nodes: interpolation of values from this level. The row of a seed
-  /// has one entry; another row has the seeds of its own and its neighbours' aggregates, in inverse
-  /// proportion to the lengths of the paths. Entries > 0, rows sum to 1.
+  /// has one entry. Other rows have entries for the seeds of the aggregates of the node and its
+  /// neighbours, in inverse proportion to the lengths of the paths. Entries > 0, rows sum to 1.
   SparseRows prolongation;
 };
 
 /// Coarser and coarser versions of a graph.
 struct GraphHierarchy {
-  /// Finest first, without the graph itself. They stay where they are made: to move a sparse matrix
-  /// of Eigen is to copy it.
+  /// Finest first, without the graph itself. A deque, since moving a sparse matrix of Eigen copies
+  /// it.
   std::deque<HierarchyLevel> levels;
 };
 
@@ -37,10 +37,9 @@ struct GraphHierarchy {
 /// \param seed  of the order in which nodes are taken.
 /// \param coarsest_size levels are added until one has at most this number of nodes; >= 4.
 /// \param execution threads, progress
-/// \return the levels, each of some 4 to 5 times fewer nodes than the one before; empty for a graph
-///         of at most `coarsest_size` nodes. The same for a seed on every platform and for any
-///         number of threads, and, up to ties and rounding, for a moved, turned, scaled or
-///         renumbered cloud.
+/// \return the levels, each with about a quarter of the nodes of the last; none if the graph has
+///         at most `coarsest_size` nodes. The same on every platform and for any number of threads,
+///         and, up to ties and rounding, for a moved, turned, scaled or renumbered cloud.
 /// \throw Cancelled. Cost: O(n log n).
 GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index coarsest_size,
                                    const Execution& execution = {});

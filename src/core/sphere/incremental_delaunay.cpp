@@ -20,10 +20,9 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Stereographic projection from a pole on the sphere: inversion about it, which takes the sphere
-/// to a plane. It is written in differences from the pole, which keeps what is near the pole
-/// accurate in relation to its distance; and of a direction's rounding only that across the sphere
-/// counts (along the radius it cancels, to first order).
+/// Stereographic projection from a pole on the sphere: the inversion about it, which takes the
+/// sphere to a plane. It uses differences from the pole, so that points near the pole are accurate
+/// relative to their distance. Rounding of a direction along the radius cancels to first order.
 class StereographicProjection {
 public:
   /// Right-handed axes of the plane as seen from outside the sphere, looking past the antipode of
@@ -31,9 +30,9 @@ public:
   explicit StereographicProjection(const Eigen::Vector3d& pole)
       : pole_(pole), axes_(tangentBasis(pole)) {}
 
-  /// Finds the place of a direction in the plane, as doubles with which the predicates are exact:
-  /// multiples of 2^-200 below 2^200, so that no product of four differences leaves the range of
-  /// double. False if it is too near the pole for that.
+  /// Finds the place of a direction in the plane, in multiples of 2^-200 below 2^200: products of
+  /// four differences stay in the range of double, so predicates are exact. Returns false if the
+  /// direction is too near the pole for that.
   bool project(const Eigen::Vector3d& direction, Eigen::Vector2d& place) const {
     const Eigen::Vector3d chord = direction - pole_;
     const double squared = chord.squaredNorm();
@@ -75,7 +74,7 @@ public:
       return location.coincident;
     const std::array<Index, 3> parts = mesh_.split(location.triangle, p);
     last_ = parts[0];
-    // The part at a side is flat. No other can become flat: see inConflict().
+    // The part at a side is flat. No other part can become flat: see inConflict().
     if (location.side >= 0)
       mesh_.flipFree(parts[static_cast<std::size_t>(location.side)], 0);
     legalize(parts[0]);
@@ -85,7 +84,7 @@ public:
   /// Puts a vertex beside another one: it takes over half of the triangles around it.
   void putBeside(Index v, Index p) {
     const Index degree = mesh_.degree(v);
-    // The neighbours at both ends get a triangle more: the first one has the fewest of all.
+    // The neighbours at both ends get one more triangle. So the first one has the fewest of all.
     Index t = mesh_.triangleAt(v);
     const auto degree_of_end = [&](Index around) {
       return mesh_.degree(mesh_.vertex(around, previousCorner(mesh_.cornerOf(around, v))));
@@ -96,8 +95,8 @@ public:
     });
     const auto corner = static_cast<std::size_t>(mesh_.cornerOf(t, v));
     const Index part = mesh_.split(t, p)[(corner + 2) % 3];
-    // Each flip gives one more of the neighbours from the old vertex to the new one, which has
-    // three of them to begin with: they are never joined before.
+    // Each flip moves one neighbour from the old vertex to the new one, which has three at first.
+    // The two are never joined before.
     for (Index i = 0; i < (degree - 2) / 2; ++i)
       mesh_.flipFree(part, 0);
   }
@@ -112,11 +111,11 @@ private:
   const Eigen::Vector2d& place(Index v) const { return places_[v]; }
   const Eigen::Vector2d& place(Index t, int corner) const { return place(mesh_.vertex(t, corner)); }
 
-  /// Finds the triangle that holds a place, the closed one in the plane or one with the pole, by a
-  /// walk from where the last vertex went in, across any side that has the place strictly beyond
-  /// it. In a Delaunay triangulation each step lowers the power of the place with respect to the
-  /// circle of the triangle, or keeps it among triangles of one circle, which form a tree: with
-  /// exact predicates the walk ends (H. Edelsbrunner, 1990; O. Devillers, S. Pion and M. Teillaud,
+  /// Finds the triangle that contains a place, a closed one in the plane or one with the pole.
+  /// Walks from the last inserted vertex, across any side that has the place strictly beyond it. In
+  /// a Delaunay triangulation each step lowers the power of the place with respect to the circle of
+  /// the triangle, or keeps it among triangles of one circle, which form a tree. So with exact
+  /// predicates the walk ends (H. Edelsbrunner, 1990; O. Devillers, S. Pion and M. Teillaud,
   /// "Walking in a triangulation", 2002).
   Location locate(Index p) const {
     const Eigen::Vector2d target = place(p);
@@ -168,7 +167,7 @@ private:
   }
 
   /// Flips the sides opposite to a new vertex, corner 0 of its triangles, until none is in
-  /// conflict, going round it once, counter-clockwise from one of them.
+  /// conflict; goes round the vertex once, counter-clockwise.
   void legalize(Index first) {
     Index t = first;
     do {
@@ -187,8 +186,8 @@ private:
   Index last_ = 0;  ///< where the next walk starts
 };
 
-/// Vertices of one circle, in order, as a closed mesh: both sides of the polygon in zigzag, one
-/// of them a vertex further, so that no two diagonals are the same. At least 4 vertices.
+/// A closed mesh over at least 4 vertices of a circle, in order: a zigzag on both sides of the
+/// polygon. One is shifted by a vertex, so that no two diagonals are the same.
 Triangles twoSidedPolygon(const std::vector<Index>& ring) {
   Triangles triangles(3, 2 * static_cast<Eigen::Index>(ring.size()) - 4);
   Eigen::Index count = 0;
@@ -206,7 +205,7 @@ Triangles twoSidedPolygon(const std::vector<Index>& ring) {
   return triangles;
 }
 
-/// {a vertex, another one that coincides with it}
+/// {a vertex, another one at the same place}
 using Coincidence = std::array<Index, 2>;
 
 /// Puts the vertices that coincide with others beside them, so that those at one place share its
@@ -227,7 +226,7 @@ void putBeside(Indexed<Coincidence> coincidences, Triangulation& triangulation) 
   }
 }
 
-/// The points, numbered in the order in which they go in: neighbours lie together in memory.
+/// The points in the order of their insertion, so that neighbours lie together in memory.
 struct Vertices {
   Indexed<Index> input;             ///< the point that each vertex is; the pole is the first
   Indexed<Eigen::Vector2d> places;  ///< in the plane
@@ -241,8 +240,8 @@ struct Vertices {
 
 Vertices projectInOrder(const Positions& directions, const FractionReport& report) {
   const auto n = static_cast<Index>(directions.cols());
-  // Any point would do as pole. The highest one, nearest to the axis, makes the axes of the plane
-  // nearly those of space, and does not depend on the order of the points.
+  // Any point can be the pole. The highest one, nearest to the axis, does not depend on the order
+  // of the points, and the axes of the plane are nearly those of space.
   const auto rank = [&](Index i) {
     const auto d = directions.col(i);
     return std::make_tuple(-d.z(), std::max(std::abs(d.x()), std::abs(d.y())), d.x(), d.y());
@@ -275,7 +274,7 @@ Vertices projectInOrder(const Positions& directions, const FractionReport& repor
 }
 
 /// Brings three vertices that are not on one line to the places 1, 2 and 3, counter-clockwise.
-/// False if there are none.
+/// Returns false if there are none.
 bool beginWithTriangle(Vertices& vertices) {
   Index second = 2;
   while (second < vertices.in_plane && vertices.places[second] == vertices.places[1])
@@ -296,8 +295,8 @@ bool beginWithTriangle(Vertices& vertices) {
   return true;
 }
 
-/// Vertices that are all on one line, in its order, the pole first: on the sphere, their order on a
-/// circle through the pole.
+/// The vertices in their order along a line that holds all of them, the pole first: their order on
+/// a circle of the sphere.
 std::vector<Index> ringThroughPole(const Vertices& vertices, Indexed<Coincidence>& coincidences) {
   std::vector<Index> line(static_cast<std::size_t>(vertices.in_plane) - 1);
   std::iota(line.begin(), line.end(), Index{1});
@@ -333,7 +332,8 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
   if (is_flat) {
     std::vector<Index> ring = ringThroughPole(vertices, coincidences);
     result.coincident = coincidences.count();
-    // A mesh has at least four vertices: at three places or fewer, some begin beside their anchor.
+    // A mesh has at least four vertices. With fewer places, some vertices join the ring beside the
+    // one that they coincide with.
     for (; ring.size() < 4; coincidences.pop_back()) {
       const auto anchor = std::find(ring.begin(), ring.end(), coincidences.back()[0]);
       ring.insert(anchor + 1, coincidences.back()[1]);

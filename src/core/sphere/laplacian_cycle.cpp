@@ -4,7 +4,7 @@ namespace spherical_param::internal {
 
 LaplacianCycle::LaplacianCycle(const GraphHierarchy& hierarchy, std::size_t first)
     : hierarchy_(hierarchy), first_(first), matrices_(hierarchy.levels.size() - first + 1) {
-  // A part that is tiny on the sphere is nearly singular.
+  // A part that is tiny on the sphere makes the matrix nearly singular.
   coarsest_.setShift(0.0, 1.0 + 1e-11);
 }
 

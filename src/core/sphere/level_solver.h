@@ -23,8 +23,8 @@ public:
   Eigen::Vector3d centroid(std::size_t l, const Positions& u) const;
   /// The energy, without a barrier.
   double energy(std::size_t l, const Positions& u) const;
-  /// How hard a barrier pulls at an embedding that it holds: the residual without it, in units of
-  /// each node's mean edge; in [0, 1].
+  /// How hard a barrier pulls at an embedding that it holds: the relative residual without it, in
+  /// [0, 1].
   double pull(std::size_t l, const Positions& u) const;
 
   /// Damped sweeps on a level. \return the mean length of the tangential Laplacian before the last
@@ -35,7 +35,7 @@ public:
   /// Lowers the energy of an embedding that is not collapsed. \see minimizeByNewton
   ///
   /// \param barrier_of sets the strength of a barrier that keeps the embedding from collapsing;
-  ///                   nullptr: none, the work ends if it collapses.
+  ///                   nullptr: there is no barrier, and the work ends if the embedding collapses.
   std::vector<double> solve(std::size_t l, const Positions* barrier_of, NewtonOptions options,
                             Positions& u, LevelReport& report) const;
 

@@ -13,32 +13,21 @@
 namespace spherical_param::internal {
 namespace {
 
-// The experiments that count meshes are on 13 models and 13 shapes of up to 60,000 points, each
-// also with the graph of nearest neighbours: 8 of these 52 meshes intersect themselves. With
-// uniform weights and with a tolerance there are 104 meshes, of which 13 intersect themselves.
-
-/// Smoothing sweeps on each level. With 0 or 3, 15 of the 104 intersect themselves, with 20, 14.
+/// Number of smoothing sweeps on each level.
 constexpr int kSweeps = 10;
-/// Levels of at most this number of nodes are solved, not only smoothed. With none, 20 of the
-/// 104 intersect themselves, with those up to 3,000, 16, with all, 13.
+/// Levels of at most this number of nodes are solved, not only smoothed.
 constexpr std::size_t kMaxSolvedSize = 10000;
-/// Relative residuals to which a start, a level and the graph itself are solved: limbs shrink
-/// exponentially along the sphere, so that no absolute tolerance would show whether their tips are
-/// solved. 16 clouds with 6 seeds have 19,898 intersections after the first flips if all is solved
-/// to 1e-4, in 1.4 times as long, and 18,988 with these. With 1e-2 for the starts the wrong one is
-/// taken of a body with limbs; with 1e-2 for the levels an armadillo has 330 instead of 79. A graph
-/// that is freed of the barrier of its levels has a way to go: of 12 seeds of the springer 5 end
-/// with an RMS above 0.05 % with 1e-3, 4 with 3e-4, 3 with 3e-5.
+/// Relative residuals to which a start, a level and the graph itself are solved. Limbs shrink
+/// exponentially along the sphere, so no absolute tolerance would show whether their tips are
+/// solved. Coarser starts and levels give folded meshes, finer ones take longer. A graph without
+/// the barrier that its levels had (freed) moves far, and needs a lower tolerance.
 constexpr double kStartTolerance = 3e-3;
 constexpr double kLevelTolerance = 1e-3;
 constexpr double kGraphTolerance = 1e-2;
 constexpr double kFreedTolerance = 3e-5;
-/// The sphere drifts off a wide gap without folding what is left, and a barrier that only stops
-/// this drift leaves at most this relative residual without it: 0.003 to 0.056 on most bodies that
-/// are cut, thinned or have holes. Where the sphere has slipped off a limb, the barrier holds the
-/// folded rest, by 0.068 or more on tubes between two balls: without a bound, these and 9 other
-/// shapes have 6,904,781 self-intersections after the first flips instead of 206,919. With 0, the
-/// springer takes 210 ms instead of 60, half of an armadillo 4.7 s instead of 0.25.
+/// Maximum pull of a barrier, \see EmbeddingLevels::pull. A barrier that only keeps the sphere from
+/// drifting off a wide gap pulls by 0.003 to 0.056. If the sphere has slipped off a limb, it holds
+/// the folded rest, and pulls by 0.068 or more.
 constexpr double kMaxPull = 0.06;
 
 /// How an embedding is attempted.
@@ -83,15 +72,14 @@ private:
     return report;
   }
 
-  /// The one test: an embedding of a level has not collapsed, and no barrier pulls hard at it.
+  /// Whether an embedding of a level has not collapsed, and no barrier pulls hard at it.
   bool isAccepted(std::size_t l, const Positions& u) const {
     return !isCollapsed(levels_.centroid(l, u)) &&
            (attempt_.barrier == EmbeddingBarrier::Everywhere || levels_.pull(l, u) <= kMaxPull);
   }
 
-  /// What the best start has least of: energy, or where a barrier may pull hard, its pull. A folded
-  /// rest has little energy: by it, eight dumbbells of 2,000 points have 6,695 intersections,
-  /// not 3.
+  /// The best start has the least energy, or, where a barrier may pull hard, the least pull: a
+  /// folded rest has little energy.
   double valueOf(std::size_t l, const Positions& u) const {
     return attempt_.barrier == EmbeddingBarrier::Everywhere ? levels_.pull(l, u)
                                                             : levels_.energy(l, u);
@@ -124,11 +112,9 @@ private:
     return best;
   }
 
-  /// Solves a planar start. Its barrier is that of the start before the sweeps, which is stronger:
-  /// with that after them, a cut penguin has 42 intersections instead of 12 (mean of five seeds).
+  /// Solves a planar start. Its barrier is that before the sweeps, which is stronger.
   void solveStart(Positions& u, LevelReport& work) const {
-    // Smoothing sweeps on a planar start, whose edges are far from their lengths. With 0, 9 of the
-    // 52 intersect themselves.
+    // Number of smoothing sweeps, since the edges of a planar start are far from their lengths.
     constexpr int start_sweeps = 3;
     const Positions planar = u;
     levels_.smooth(attempt_.level, start_sweeps, {}, u);
@@ -191,19 +177,15 @@ private:
 ///
 /// 1. The start on the coarsest level.
 /// 2. The same with a barrier on all levels but the graph itself, and with more starts. It helps
-///    graphs of a few nodes and with wide gaps, on which all starts collapse.
-/// 3. Starts on finer and finer levels: the fewer nodes are around a limb, the easier the sphere
-///    slips off it.
+///    graphs with few nodes or wide gaps, on which all starts collapse.
+/// 3. Starts on finer and finer levels: the sphere slips off a limb more easily if fewer nodes are
+///    around it.
 /// 4. The barrier also on the graph itself, however hard it pulls.
 std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels) {
-  // Largest level on which an attempt starts; the bound limits the time: a start takes up to
-  // 200 us a node. None of 578 clouds needs more than 4,312; with 100,000, scans of 300,000 points
-  // take 10 to 14 s instead of 5.
+  // Maximum number of nodes of a level on which an attempt starts; limits the time.
   constexpr std::size_t max_start_size = 5000;
   constexpr std::size_t few = 2;
-  // With a barrier, starts fail more often. With 2, an elephant from eight depth images folds with
-  // one seed of nine.
-  constexpr std::size_t many = 8;
+  constexpr std::size_t many = 8;  // starts fail more often with a barrier
   const std::size_t coarsest = levels.coarsest();
   std::vector<EmbeddingAttempt> attempts = {{coarsest, EmbeddingBarrier::None, few, few},
                                             {coarsest, EmbeddingBarrier::CoarseLevels, many, few}};

@@ -26,9 +26,9 @@ Indexed<double> pathLengths(const Graph& graph, Index source) {
   return lengths;
 }
 
-/// The centre and two of its neighbours, joined to each other if there are such.
+/// The centre and two of its neighbours, which are joined to each other if possible.
 std::array<Index, 3> outerFace(const Graph& graph, Index center) {
-  // The triangle of the least perimeter: not one that depends on the numbering of the nodes.
+  // The triangle of the least perimeter, which does not depend on the numbering of the nodes.
   std::array<Index, 3> face{};
   double least = kInfinity;
   Indexed<double> reach(graph.size(), kInfinity);  // lengths of the edges of the centre
@@ -57,7 +57,7 @@ std::array<Index, 3> outerFace(const Graph& graph, Index center) {
   return {center, next, third};
 }
 
-/// Edges on a shortest path from each node to the nearest of some others.
+/// Number of edges between each node and the nearest source.
 Indexed<int> hopsFrom(const Graph& graph, const std::array<Index, 3>& sources) {
   Indexed<int> hops(graph.size(), -1);
   std::vector<Index> queue(sources.begin(), sources.end());
@@ -90,10 +90,10 @@ void centerConformally(Positions& directions) {
   }
 }
 
-/// The points of the plane where each node but those of the outer face is the mean of its
-/// neighbours (W. T. Tutte, 1963), with conductances g_i g_j / length. g falls by a constant factor
-/// with each edge of distance from the outer face: without, nodes far from it gather in one place.
-/// The matrix is scaled to ones on the diagonal, where g no longer occurs.
+/// Places in the plane at which each node not on the outer face is the mean of its neighbours (W.
+/// T. Tutte, 1963), with conductances g_i g_j / length. g falls by a constant factor with each edge
+/// of distance from the outer face; otherwise nodes far from it would gather in one place. The
+/// matrix is scaled to ones on the diagonal, which cancels g.
 Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& outer) {
   Indexed<Index> unknown(graph.size(), 0);
   for (const Index node : outer)
@@ -114,8 +114,7 @@ Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& out
     return plane;
   const Indexed<int> hops = hopsFrom(graph, outer);
   const int max_hops = *std::max_element(hops.begin(), hops.end());
-  // Logarithm of the factor by which conductances fall with each edge of distance: with 0, the
-  // clouds of centralNodes() have 77,309. The largest argument of exp() leaves room for products.
+  // Logarithm of the factor by which g falls; bounded, so that products of exp() stay finite.
   const double drift = std::min(0.5, 300.0 / std::max(max_hops, 1));
   Indexed<double> roots(graph.size(), 0.0);
   for (const Index i : graph.nodes()) {
@@ -149,7 +148,7 @@ Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& out
   return plane;
 }
 
-/// Stereographic projection, with half of the points on each side of the equator.
+/// Inverse stereographic projection, with half of the points on each side of the equator.
 Positions projectOnSphere(Eigen::MatrixX2d plane) {
   const Eigen::Index n = plane.rows();
   std::vector<double> x(plane.col(0).data(), plane.col(0).data() + n);
@@ -171,10 +170,9 @@ Positions projectOnSphere(Eigen::MatrixX2d plane) {
 }  // namespace
 
 std::vector<Index> centralNodes(const Graph& graph) {
-  // Nodes far from each other by which central nodes are found. With 1 the 25 awkward clouds of
-  // local_delaunay_graph.cpp have 1,377,940 self-intersections instead of 61,815, with 4, 58,590.
+  // Number of nodes far from each other from which distances are measured.
   constexpr int landmarks = 12;
-  // The node of the longest edges, whatever the numbering. It only serves to find one that is far.
+  // The search begins at the node with the longest edges, whatever the numbering.
   Indexed<double> reach(graph.size(), 0.0);
   for (const Index i : graph.nodes())
     for (const double length : graph.lengthsOf(i))

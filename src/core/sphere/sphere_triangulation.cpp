@@ -14,9 +14,9 @@ Triangles triangulateSphere(const Positions& directions, const Execution& execut
       "triangulateSphere: " + std::to_string(directions.cols()) + " points; ";
   if (directions.cols() < 4)
     throw InvalidInput(points + "at least 4 are needed");
-  constexpr Eigen::Index most_points = Eigen::Index{1} << 29;  // of incrementalDelaunay()
-  if (directions.cols() > most_points)
-    throw InvalidInput(points + "at most " + std::to_string(most_points) + " can be triangulated");
+  constexpr Eigen::Index max_points = Eigen::Index{1} << 29;  // of incrementalDelaunay()
+  if (directions.cols() > max_points)
+    throw InvalidInput(points + "at most " + std::to_string(max_points) + " can be triangulated");
   constexpr double tolerance = 1e-9;
   for (Eigen::Index i = 0; i < directions.cols(); ++i)
     if (!(std::abs(directions.col(i).squaredNorm() - 1.0) <= tolerance))

@@ -46,8 +46,8 @@ inline Eigen::Vector3d tangentialLaplacian(const Graph& graph, EdgeWeights weigh
   return (sum - sum.dot(center) * center) / sum_of_weights;
 }
 
-/// Fractions of a surface of the nodes: the mean of square(i, e) over the entries e of each node i,
-/// scaled to sum 1.
+/// The nodes' fractions of the area of a surface: the mean of square(i, e) over the entries e of
+/// each node i, scaled to sum 1.
 template <typename Square>
 Eigen::VectorXd meanSquares(const Graph& graph, const Square& square) {
   Eigen::VectorXd means(graph.size());
@@ -60,8 +60,8 @@ Eigen::VectorXd meanSquares(const Graph& graph, const Square& square) {
   return means / std::max(means.sum(), std::numeric_limits<double>::min());
 }
 
-/// A damped Jacobi step: moves each node by a fraction of its tangential Laplacian, all at once,
-/// and back to the sphere.
+/// A damped Jacobi step: moves all nodes at once by a fraction of their tangential Laplacian, then
+/// back to the sphere.
 ///
 /// \param u     3 x n, unit vectors.
 /// \param moved 3 x n, receives the nodes after the step.

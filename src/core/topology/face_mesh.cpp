@@ -20,7 +20,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Larger faces may be openings, or beside a false edge: they stay loops at first.
+/// Larger faces may be openings, or beside a false edge. They are filled later.
 constexpr std::size_t kMaxCorners = 12;
 
 using TriangleList = std::vector<std::array<Index, 3>>;
@@ -57,14 +57,14 @@ private:
   std::unordered_set<std::uint64_t> added_;
 };
 
-/// Triangles, and for each of them whether it is in no face of the graph.
+/// The triangles of the faces, and those that fill the loops around them.
 struct Faces {
   Triangles triangles;
-  Indexed<char> is_filling;
+  Indexed<char> is_filling;  ///< of each triangle
 };
 
-/// Cuts a polygon into triangles, ear by ear, the shortest new edge first, none of which is there
-/// already.
+/// Cuts a polygon into triangles, ear by ear, the shortest new edge first. No new edge is in the
+/// mesh already.
 ///
 /// \param loop of the polygon, counter-clockwise, each vertex once.
 /// \param edges of the mesh; receives the new ones.
@@ -112,8 +112,8 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
   return true;
 }
 
-/// Cuts a polygon into triangles that bend least (Liepa 2003): by the lengths of the edges times
-/// the angles there, and the longest sides. None of the new edges is there already.
+/// Cuts a polygon into triangles that bend least (Liepa 2003), by the angles at the edges times
+/// their lengths, and by the longest sides. No new edge is in the mesh already.
 ///
 /// \param loop, edges, triangles as for cutIntoTriangles().
 /// \param beyond unit normals of the triangles beyond the sides of the loop.
@@ -130,11 +130,11 @@ bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
                        const Eigen::Vector3d& other) {
     return edge.norm() * std::acos(std::clamp(normal.dot(other), -1.0, 1.0));
   };
-  /// The best triangles over the corners from one to another.
+  /// The best triangles over the corners from i to j.
   struct Best {
     double cost = none;
     Index tip = -1;
-    Eigen::Vector3d normal;  ///< of the triangle at the side between them
+    Eigen::Vector3d normal;  ///< of the triangle at the side from i to j
   };
   std::vector<Best> all(loop.size() * loop.size());
   const auto best = [&](Index i, Index j) -> Best& {
@@ -185,8 +185,8 @@ bool cutIntoSmooth(const Positions& points, const std::vector<Index>& loop,
   return true;
 }
 
-/// The triangle of a face of three, as cutIntoTriangles() writes it: opposite to its shortest edge
-/// first.
+/// The triangle of a face of three nodes. It begins as cutIntoTriangles() does, opposite to its
+/// shortest edge.
 std::array<Index, 3> triangleOf(const Positions& points, const Row<Index>& face) {
   std::array<double, 3> opposite{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -217,8 +217,7 @@ Faces facesOf(const Positions& points, const RotationSystem& rotation) {
   return {matrixOf(triangles), Indexed<char>(triangles.size(), 0)};
 }
 
-/// The triangles around a vertex that follow each other, but those that are dropped, in fans; some
-/// of the lists are empty.
+/// The fans of consecutive triangles around a vertex, without dropped ones; some lists are empty.
 Indexed<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
                                    const Indexed<char>& is_dropped, Index v) {
   Indexed<std::array<Index, 3>> wedges;  // first neighbour, last one, triangle
@@ -237,7 +236,7 @@ Indexed<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable
   return fans;
 }
 
-/// Leaves the triangles that meet a condition.
+/// The triangles that meet a condition.
 template <typename Condition>
 Faces filtered(const Faces& faces, const Condition& stays) {
   std::vector<Eigen::Index> kept;
@@ -251,7 +250,7 @@ Faces filtered(const Faces& faces, const Condition& stays) {
   return rest;
 }
 
-/// Leaves the largest fan of each vertex.
+/// Keeps only the largest fan of each vertex.
 Faces withoutPinches(Faces faces, std::size_t vertices, int threads) {
   const Triangles& triangles = faces.triangles;
   std::vector<Index> due = checkTopology(triangles, vertices, threads).nonmanifold_vertices;
@@ -277,7 +276,7 @@ Faces withoutPinches(Faces faces, std::size_t vertices, int threads) {
   return filtered(faces, [&](Eigen::Index t) { return is_dropped[t] == 0; });
 }
 
-/// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
+/// Fills the boundary loops of a mesh; leaves out pieces with loops that cannot be filled.
 Faces closed(const Positions& points, const Faces& faces, int threads) {
   // The time for the best triangles grows with the cube of a loop.
   constexpr std::size_t max_loop = 150;
@@ -292,7 +291,7 @@ Faces closed(const Positions& points, const Faces& faces, int threads) {
     });
     return are_joined;
   });
-  /// The normal of the triangle that has an edge in this direction.
+  // The normal of the triangle with the edge from v to w.
   const auto normal_at = [&](Index v, Index w) {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     corners.forEachCorner(v, [&](Index t, Index k) {
@@ -324,10 +323,10 @@ Faces closed(const Positions& points, const Faces& faces, int threads) {
 struct Tube {
   Index first = -1;  ///< -1: there is none
   Index last = -1;
-  std::array<Index, 6> rims{};  ///< the corners of the first one, and those across from them
+  std::array<Index, 6> ends{};  ///< the corners of the first one, and those across from them
 };
 
-/// The shortest tube between triangles at two vertices that are not taken.
+/// The shortest tube between two triangles that are not taken, at two vertices.
 Tube shortestTube(const Positions& points, const Triangles& spheres, const CornerTable& corners,
                   const Indexed<char>& is_taken, Index v, Index w) {
   Tube best;
@@ -336,24 +335,24 @@ Tube shortestTube(const Positions& points, const Triangles& spheres, const Corne
     corners.forEachCorner(w, [&](Index u, Index l) {
       if (is_taken[t] != 0 || is_taken[u] != 0)
         return;
-      const std::array<Index, 6> rims{
+      const std::array<Index, 6> ends{
           spheres(k, t), spheres(nextCorner(k), t),     spheres(previousCorner(k), t),
           spheres(l, u), spheres(previousCorner(l), u), spheres(nextCorner(l), u)};
       double sum = 0.0;
       for (std::size_t i = 0; i < 3; ++i)
-        sum += (points.col(rims[i]) - points.col(rims[i + 3])).norm() +
-               (points.col(rims[i]) - points.col(rims[(i + 1) % 3 + 3])).norm();
+        sum += (points.col(ends[i]) - points.col(ends[i + 3])).norm() +
+               (points.col(ends[i]) - points.col(ends[(i + 1) % 3 + 3])).norm();
       if (sum < least) {
         least = sum;
-        best = {t, u, rims};
+        best = {t, u, ends};
       }
     });
   });
   return best;
 }
 
-/// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
-/// edges first. Returns the piece with the most vertices.
+/// Joins closed pieces by tubes between triangles at the ends of edges of the graph, short edges
+/// first. Returns the piece with the most triangles.
 Faces joined(const Positions& points, const Graph& graph, Faces closed) {
   const Triangles& spheres = closed.triangles;
   UnionFind pieces = piecesOf(spheres, graph.size());
@@ -382,8 +381,8 @@ Faces joined(const Positions& points, const Graph& graph, Faces closed) {
     pieces.unite(v, w);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
-      triangles.push_back({tube.rims[i], tube.rims[j], tube.rims[j + 3]});
-      triangles.push_back({tube.rims[i], tube.rims[j + 3], tube.rims[i + 3]});
+      triangles.push_back({tube.ends[i], tube.ends[j], tube.ends[j + 3]});
+      triangles.push_back({tube.ends[i], tube.ends[j + 3], tube.ends[i + 3]});
     }
   }
   Indexed<char> is_filling(triangles.size(), 1);
@@ -399,8 +398,8 @@ Faces joined(const Positions& points, const Graph& graph, Faces closed) {
   return filtered(all, [&](Eigen::Index t) { return pieces.find(all.triangles(0, t)) == largest; });
 }
 
-/// A region of a closed mesh that grows triangle by triangle, those with short sides first, and
-/// stays a disc.
+/// A region of a closed mesh that grows triangle by triangle, triangles with short sides first, and
+/// stays planar.
 class PlanarRegion {
 public:
   PlanarRegion(const Positions& points, const SphereMesh& mesh)
@@ -410,7 +409,7 @@ public:
 
   void grow(Index first) {
     add(first);
-    std::vector<Index> touching;  // they would join the region to itself
+    std::vector<Index> touching;  // these triangles would join the region to itself
     while (!due_.empty() || !touching.empty()) {
       while (!due_.empty()) {
         const Index t = due_.top().second;
@@ -445,7 +444,7 @@ private:
     return std::max({length(a, b), length(b, c), length(c, a)});
   }
 
-  /// The corner opposite to the only side that is in the region; -1: there are more.
+  /// The corner opposite to the only side next to the region; -1 if there are more such sides.
   int tipOf(Index t) const {
     int tip = -1;
     int sides = 0;
@@ -470,8 +469,8 @@ private:
   std::priority_queue<Due, std::vector<Due>, std::greater<>> due_;
 };
 
-/// Puts a node into the nearest triangle around its neighbours. Returns whether it has some in the
-/// mesh.
+/// Puts a node into the nearest triangle around its neighbours. Returns whether a neighbour is in
+/// the mesh.
 bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& mesh) {
   Index nearest = -1;
   double least = std::numeric_limits<double>::infinity();
@@ -497,7 +496,7 @@ std::optional<SphereMesh> meshOf(const Positions& points, const Graph& graph, Fa
   const Faces faces =
       joined(points, graph,
              closed(points, withoutPinches(std::move(open), graph.size(), threads), threads));
-  // Fewer are one triangle and its filled boundary loop: three vertices are no SphereMesh.
+  // One triangle and its filled boundary loop have three vertices: too few for a SphereMesh.
   if (faces.triangles.cols() < 4)
     return std::nullopt;
   SphereMesh mesh(faces.triangles, graph.size(), threads);
@@ -539,7 +538,7 @@ SphereMesh withAllNodes(const Positions& points, const Graph& graph, const Spher
     const Index v = due[i];
     if (mesh.triangleAt(v) >= 0 || !insert(points, graph, v, mesh))
       continue;
-    // Neighbours that had none in the mesh have one now.
+    // These may have had no neighbour in the mesh before.
     for (const Index w : graph.row(v))
       if (mesh.triangleAt(w) < 0)
         due.push_back(w);

@@ -9,12 +9,11 @@
 
 namespace spherical_param::internal {
 
-/// Finds a closed mesh of the faces of a rotation system; triangles that fill loops are open. Where
-/// a few edges of a graph are false, the embedding of all is folded, but all faces elsewhere are
-/// right.
+/// Finds a closed mesh of the faces of a rotation system; triangles that fill loops are open. A few
+/// false edges of a graph fold the whole embedding, but faces elsewhere are still right.
 ///
-/// 1. Triangles, and faces of up to 12 nodes, cut into triangles, are a mesh with openings. Where
-///    several fans meet in a node, the largest stays.
+/// 1. Triangles, and faces of up to 12 nodes, which are cut into triangles, form a mesh with
+///    openings. Where several fans meet in a node, the largest stays.
 /// 2. The boundary loops are filled with triangles, the shortest edges first, and the pieces joined
 ///    by tubes along edges of the graph.
 ///
@@ -25,14 +24,14 @@ namespace spherical_param::internal {
 std::optional<SphereMesh> meshFaces(const Positions& points, const Graph& graph,
                                     const RotationSystem& rotation);
 
-/// Opens the handles of a mesh of faces: a disc grows over it; the triangles that it cannot take
-/// are left out, and the loops filled again.
+/// Cuts the handles of a mesh of faces: a planar region grows over it. The triangles that it cannot
+/// take are left out, and the loops are filled again.
 ///
-/// \return nothing if handles are left.
+/// \return nothing if handles remain.
 std::optional<SphereMesh> withoutHandles(const Positions& points, const Graph& graph,
                                          SphereMesh mesh);
 
-/// The mesh of faces with all nodes, and nothing open: puts each node that it does not have into a
+/// The mesh of faces with all nodes and without open triangles: puts each missing node into a
 /// triangle near a neighbour.
 SphereMesh withAllNodes(const Positions& points, const Graph& graph, const SphereMesh& faces);
 

@@ -12,7 +12,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// The loop of an opening as a circle: the angle of each of its nodes.
+/// The angles of the nodes of an opening if its loop were a circle.
 std::vector<double> anglesAround(const Positions& points, const Opening& opening) {
   std::vector<double> angles;
   double length = 0.0;
@@ -29,27 +29,27 @@ std::vector<double> anglesAround(const Positions& points, const Opening& opening
 void fill(const Positions& points, const Opening& opening, std::vector<Eigen::Vector3d>& nodes,
           std::vector<Bridge>& edges) {
   const RingedDisc disc = ringedDisc(anglesAround(points, opening));
-  const auto rim = static_cast<Index>(opening.loop.size());
+  const auto size = static_cast<Index>(opening.loop.size());
   const auto first = static_cast<Index>(points.cols()) + static_cast<Index>(nodes.size());
   const Indexed<Index> loop(opening.loop.begin(), opening.loop.end());
   const auto node = [&](Index vertex) {
-    return vertex < rim ? loop[vertex] : first + vertex - rim;
+    return vertex < size ? loop[vertex] : first + vertex - size;
   };
-  // Between the radii of the discs of its area and of its length.
+  // Between the radii of a disc of its area and a circle of its length.
   const double radius =
       std::sqrt(std::sqrt(opening.area / kPi) * opening.boundary_length / (2.0 * kPi));
   for (const auto& triangle : disc.triangles.colwise())
     for (Index k = 0; k < 3; ++k) {
       const Index v = triangle[k];
       const Index w = triangle[(k + 1) % 3];
-      if (std::max(v, w) >= rim)
+      if (std::max(v, w) >= size)
         edges.push_back(
             {node(v), node(w),
              std::max(radius * disc.distance(v, w), std::numeric_limits<double>::min())});
     }
-  // Between the point of the rim at their angle and the centre.
+  // Each inner vertex is between the centre and the node of the loop at its angle.
   for (std::size_t i = opening.loop.size(); i < disc.radii.size(); ++i) {
-    const auto at_angle = static_cast<Index>(disc.angles[i] / (2.0 * kPi) * rim) % rim;
+    const auto at_angle = static_cast<Index>(disc.angles[i] / (2.0 * kPi) * size) % size;
     nodes.emplace_back(opening.center +
                        disc.radii[i] * (points.col(loop[at_angle]) - opening.center));
   }

@@ -20,12 +20,12 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Index v = loop[i];
       const Index w = loop[i + 1 < loop.size() ? i + 1 : 0];
-      rim_edges_.push_back({std::min(v, w), std::max(v, w)});
+      boundary_edges_.push_back({std::min(v, w), std::max(v, w)});
       is_in_loop_[v] = 1;
       add(v, static_cast<Index>(o));
     }
   }
-  sortUnique(rim_edges_);
+  sortUnique(boundary_edges_);
   for (int step = 0; step < 2; ++step) {
     const std::vector<Index> last = std::move(ring);
     ring.clear();
@@ -56,9 +56,9 @@ bool OpenPlaces::close(const std::vector<Index>& vertices) {
   return has_changed;
 }
 
-bool OpenPlaces::isRim(Index a, Index b) const {
+bool OpenPlaces::isBoundary(Index a, Index b) const {
   const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
-  return std::binary_search(rim_edges_.begin(), rim_edges_.end(), edge);
+  return std::binary_search(boundary_edges_.begin(), boundary_edges_.end(), edge);
 }
 
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
@@ -75,7 +75,7 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
         const Index t = piece[head];
         const Index next = mesh.neighbor(t, k);
         const auto [v, w] = mesh.side(t, k);
-        has_loop = has_loop || openings.isRim(v, w);
+        has_loop = has_loop || openings.isBoundary(v, w);
         if (is_open(next) && seen.insert(next))
           piece.push_back(next);
       }

@@ -7,7 +7,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Whether the mesh has triangles over an opening.
+/// Whether the mesh fills an opening.
 bool isFilled(const Opening& opening, bool is_cloud_flat, const Options& options) {
   if (is_cloud_flat)
     return false;

@@ -17,15 +17,15 @@
 namespace spherical_param::internal {
 namespace {
 
-/// What a face needs to be an opening: edges, width [spacing] and mean corner [rad]; from the sure
-/// width on it is certain.
+/// Minimum number of edges, width [spacing] and mean corner [rad] of a face that is an opening.
+/// From the certain width on it is certainly one.
 constexpr std::size_t kMinSteps = 7;
 constexpr double kMinWidth = 3.0;
-constexpr double kSureWidth = 9.0;
+constexpr double kCertainWidth = 9.0;
 constexpr double kMinCorner = 0.65 * kPi;
 
-/// The least area of triangles over a loop (Barequet and Sharir 1995); of a long loop, over
-/// vertices at equal steps of it.
+/// The least area of triangles over a loop (Barequet and Sharir 1995); over some vertices of a long
+/// loop.
 double leastArea(const Positions& points, const std::vector<Index>& loop) {
   constexpr Eigen::Index max_corners = 96;
   const auto all = static_cast<Eigen::Index>(loop.size());
@@ -33,7 +33,7 @@ double leastArea(const Positions& points, const std::vector<Index>& loop) {
   const auto corner = [&](Eigen::Index i) {
     return points.col(loop[static_cast<std::size_t>(i * all / n)]);
   };
-  Eigen::MatrixXd least = Eigen::MatrixXd::Zero(n, n);  // over the corners from one to another
+  Eigen::MatrixXd least = Eigen::MatrixXd::Zero(n, n);  // over the corners from i to j
   for (Eigen::Index steps = 2; steps < n; ++steps)
     for (Eigen::Index i = 0; i + steps < n; ++i) {
       const Eigen::Index j = i + steps;
@@ -68,11 +68,10 @@ std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const RotationS
   return edges;
 }
 
-/// The largest face of the graph of a flat patch, however narrow: what is around it. None of points
-/// on a line.
+/// The face around a flat patch, which is the largest one; nothing for points on a line.
 std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>& spacing,
                                  const RotationSystem& rotation) {
-  // A narrower flat patch is a line [spacing].
+  // Narrower patches are lines [spacing].
   constexpr double min_patch_width = 0.1;
   std::optional<Opening> outside;
   const NeighborRows faces = rotation.faces(3, 0.0);
@@ -97,7 +96,7 @@ public:
   bool isNear(const Eigen::Vector3d& point) const {
     return (point - center_).norm() <= 1.01 * radius_;
   }
-  /// Over the plane of the loop, negative on its other side.
+  /// Signed height over the plane of the loop.
   double heightOf(const Eigen::Vector3d& point) const { return normal_.dot(point - center_); }
 
 private:
@@ -106,20 +105,19 @@ private:
   double radius_ = 0.0;
 };
 
-/// Whether an opening is certainly the rim of a sheet: the surface is within its loop, and low over
-/// the plane of the loop.
-bool isRimOfSheet(const Positions& points, const Opening& opening) {
-  // A hemisphere has 0.5 times the width.
-  constexpr double max_height = 0.25;
+/// Whether an opening is certainly the boundary of a sheet: the surface is within its loop, and low
+/// over the plane of the loop.
+bool isBoundaryOfSheet(const Positions& points, const Opening& opening) {
+  constexpr double max_height = 0.25;  // [width]; a hemisphere has 0.5
   const LoopDisc disc(points, opening);
   return std::all_of(points.colwise().begin(), points.colwise().end(), [&](const auto& point) {
     return disc.isNear(point) && std::abs(disc.heightOf(point)) <= max_height * opening.width;
   });
 }
 
-/// Whether the surface is on one side of an opening, up to a bulge.
+/// Whether the surface is on one side of an opening, except for a bulge.
 bool isBase(const Positions& points, const Opening& opening) {
-  constexpr double max_height = 0.25;
+  constexpr double max_height = 0.25;  // of the bulge [width]
   const LoopDisc disc(points, opening);
   double lowest = 0.0;
   double highest = 0.0;
@@ -130,14 +128,12 @@ bool isBase(const Positions& points, const Opening& opening) {
   return std::min(-lowest, highest) <= max_height * opening.width;
 }
 
-/// The openings that are seen.
+/// Finds the openings among the faces.
 Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                     const RotationSystem& rotation) {
   Openings result;
-  // A face less round than this, 1 for a disc, is a slit, and must be wider [spacing]. Left open, a
-  // seam of a closed model, 82 edges long and 3.6 spacings wide, makes the RMS of its open clouds 4
-  // to 30 times as large; a true slit of 14 clouds that is filled 1.5 times. With 5 spacings
-  // another two sheets join.
+  // A face less round than this is a slit, and must be wider [spacing]: it may be a seam of a
+  // closed surface. A disc has a roundness of 1.
   constexpr double min_roundness = 0.2;
   constexpr double min_slit_width = 4.0;
   result.spacing = spacing;
@@ -159,7 +155,7 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   if (!result.openings.empty()) {
     Opening& longest = result.openings.front();
     longest.is_base = isBase(points, longest);
-    if (isRimOfSheet(points, longest)) {
+    if (isBoundaryOfSheet(points, longest)) {
       longest.certainty = 1.0;
       longest.is_flat = false;
     }
@@ -188,19 +184,19 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
     moments += p * p.transpose() / m;
   }
   opening.area = area.norm();
-  const double sure_area = kSureWidth * opening.spacing * opening.boundary_length / 4.0;
-  // The vector area of a loop that curls is small, the opening is not.
-  if (const double least = opening.area < sure_area ? leastArea(points, opening.loop) : 0.0;
-      least >= sure_area)
+  const double certain_area = kCertainWidth * opening.spacing * opening.boundary_length / 4.0;
+  // A loop that curls has a small vector area, however large its opening is.
+  if (const double least = opening.area < certain_area ? leastArea(points, opening.loop) : 0.0;
+      least >= certain_area)
     opening.area = least;
   opening.width =
       std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
-  // Loops nearer to a plane are flat [spacing].
+  // Flat loops are within this RMS distance of a plane [spacing].
   constexpr double max_flat = 0.01;
   opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < max_flat * opening.spacing;
   opening.certainty = std::clamp(
-      (opening.width / opening.spacing - kMinWidth) / (kSureWidth - kMinWidth), 0.0, 1.0);
+      (opening.width / opening.spacing - kMinWidth) / (kCertainWidth - kMinWidth), 0.0, 1.0);
   return opening;
 }
 
@@ -215,7 +211,7 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Indexed
 
 std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<Opening>& openings,
                                     const Positions& others) {
-  // Near is up to this height [spacing]. The base of one model is 1.3 high.
+  // Near the plane is up to this height [spacing].
   constexpr double max_height = 2.0;
   std::vector<Index> found;
   for (const Opening& opening : openings) {

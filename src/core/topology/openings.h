@@ -23,7 +23,7 @@ struct Openings {
 
 namespace internal {
 
-/// Sizes of what a loop encloses.
+/// The opening within a loop, with its sizes.
 Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop);
 
 /// Finds the openings of a sampled surface in its neighbour graph, before meshing, among the faces
@@ -38,19 +38,19 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
 /// sides of a thin part. A one-sided surface keeps them.
 ///
 /// \param points   3 x n, finite.
-/// \param graph    n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
+/// \param graph    n nodes, tangent Delaunay; bridges between parts do no harm.
 /// \param spacing  of each node.
 /// \param rotation of the graph; afterwards without edges between opposite sheets if there are
 ///                 openings.
 /// \return the openings. Cost: O(n).
 ///
-/// Not guaranteed: openings below some 5 spacings and seams between sheets that nearly touch are
+/// Not guaranteed: openings below some 5 spacings and seams between sheets that nearly touch may be
 /// missed; a flat face of the surface without points inside counts as an opening.
 Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                       RotationSystem& rotation);
 
-/// Which points are in openings, as if what is open were sampled by a few: those within a loop and
-/// near its plane, if no other point of these is within the same distance.
+/// Finds the points that sample the surface in an opening: those near its loop, if all of them are
+/// also near the plane of the loop.
 ///
 /// \param points 3 x n, of the openings.
 /// \param others 3 x m.

@@ -11,19 +11,20 @@
 
 namespace spherical_param::internal {
 
-/// What is known of a surface before it is meshed: its openings, and the faces of its graph.
+/// What is known of a surface before it is meshed: its openings, and a mesh of the faces of its
+/// graph.
 class SurfacePlan {
 public:
-  /// A closed surface: that of a graph which shows no openings.
+  /// A closed surface without known faces.
   SurfacePlan() = default;
-  /// \param points  nodes, must outlive this, as the graph.
-  /// \param is_flat all points are in one plane: openings cannot be filled.
+  /// \param points  nodes; must outlive this, as must the graph.
+  /// \param is_flat all points are in one plane, where openings cannot be filled.
   /// \param unit    of the nodes' coordinates [unit of the input].
   SurfacePlan(const Positions& points, const Graph& graph, bool is_flat, double unit,
               const Options& options, StageClock& clock);
 
   const OpenSurface& openings() const { return openings_; }
-  /// \see meshFaces; nullptr if there is none.
+  /// The mesh of the faces, \see meshFaces; nullptr if there is none.
   const SphereMesh* faces();
   /// Whether the points sample a surface at all. \see spreadOf
   bool samplesSurface() const { return samples_surface_; }

@@ -17,20 +17,17 @@
 namespace spherical_param::internal {
 namespace {
 
-/// How long the sides of a surface may be, in spacings.
+/// Maximum length of the sides of a surface [spacing].
 struct Rule {
-  double along;           ///< the rays
-  double across;          ///< them, where wider ones are over gaps
-  bool goes_straight_on;  ///< longer ones are no jumps where the surface goes straight on
+  double along;             ///< of sides along the rays
+  double across;            ///< of sides across the rays
+  bool allows_straight_on;  ///< longer sides are no jumps where the surface goes straight on
 };
 
-// Of 4, 6 and 8 times along the rays, 4 is truest on scans with truth (the RMS of a jaw is 0.027 %
-// of its size, with 6 times 0.037 %).
 constexpr Rule kRule{4.0, 6.0, false};
-// With the rule above for rims and gaps, too, 10 times as many points of a depth image and 2 % more
-// of airborne data are left out.
+/// For boundaries and gaps, where the strict rule would leave out too many points.
 constexpr Rule kMildRule{6.0, 8.0, true};
-/// Sides within 5 degrees of the ray. With 8 degrees the ground that a tripod sees far away tears.
+/// Cosine of the angle below which a side runs along its ray: 5 degrees.
 const double kNearRay = std::cos(5.0 * kPi / 180.0);
 
 class Opener {
@@ -52,21 +49,20 @@ public:
 private:
   bool isOpen(Index t) const { return mesh_.isOpen(t); }
 
-  /// Limits the spacing to that of a surface which the place sees at a flat angle: a false point
-  /// between surfaces is far from all others, but not from their rays.
+  /// Limits the spacing to that of a surface seen at a flat angle: a false point between surfaces
+  /// is far from all other points, but near to their rays.
   void limitSpacing() {
-    // Of the usual angle between rays. With 2 a jaw tears at its rims (RMS 0.048 % instead of
-    // 0.028 %), with 4 false points of a depth image hold sheets (0.61 % instead of 0.41 %).
-    constexpr double most = 3.0;
+    constexpr double max_angle = 3.0;  // [typical angle between rays]
     const Positions directions = directionsFrom(view_.place, points_);
     std::vector<double> angles;
     for (const auto& t : view_.triangles.colwise())
       for (int k = 0; k < 3; ++k)
         if (t[k] != view_.behind && t[(k + 1) % 3] != view_.behind)
           angles.push_back((directions.col(t[k]) - directions.col(t[(k + 1) % 3])).norm());
-    const double usual = medianOf(angles);
+    const double typical = medianOf(angles);
     for (const Index v : indicesOf(spacing_))
-      spacing_[v] = std::min(spacing_[v], most * usual * (points_.col(v) - view_.place).norm());
+      spacing_[v] =
+          std::min(spacing_[v], max_angle * typical * (points_.col(v) - view_.place).norm());
   }
 
   bool isJumpAt(Index t, const Rule& rule) const {
@@ -75,7 +71,7 @@ private:
            isJump(a, b, rule) || isJump(b, c, rule) || isJump(c, a, rule);
   }
 
-  /// Whether a triangle has no area, as those at the rim of a grid without heights.
+  /// Whether a triangle has no area, as at the boundary of a flat grid.
   bool isFlat(Index a, Index b, Index c) const {
     const Eigen::Vector3d corner = points_.col(a);
     return (points_.col(b) - corner).cross(Eigen::Vector3d(points_.col(c)) - corner).isZero(0.0);
@@ -89,11 +85,11 @@ private:
     const double spacing = std::min(spacing_[a], spacing_[b]);
     const double most = (2.0 * cosine * cosine > 1.0 ? rule.along : rule.across) * spacing;
     return (length > most || (cosine > kNearRay && length > spacing)) &&
-           !(rule.goes_straight_on && length < 2.0 * std::min(lengthBehind(a, side / length),
-                                                              lengthBehind(b, -side / length)));
+           !(rule.allows_straight_on && length < 2.0 * std::min(lengthBehind(a, side / length),
+                                                                lengthBehind(b, -side / length)));
   }
 
-  /// Length of the edge that a side continues straight, within 30 degrees; 0 if there is none.
+  /// Length of the edge before v that the side continues within 30 degrees; 0 if there is none.
   ///
   /// \param direction of the side from v.
   double lengthBehind(Index v, const Eigen::Vector3d& direction) const {
@@ -127,7 +123,7 @@ private:
     }
   }
 
-  /// Leaves one fan of the surface at each vertex.
+  /// Leaves one fan of the surface at each vertex: closes narrow gaps, opens smaller fans.
   void releasePinches() {
     std::vector<Index> due(columnCount(points_));
     for (std::size_t i = 0; i < due.size(); ++i)
@@ -159,7 +155,7 @@ private:
     }
   }
 
-  /// The narrowest gap at a vertex between fans that is no jump by the mild rule; empty if all are.
+  /// The narrowest gap between fans at a vertex that is no jump by the mild rule; empty if all are.
   Fan narrowestGap(Index v, const Indexed<std::uint8_t>& was_closed) const {
     Fan best;
     double least = std::numeric_limits<double>::infinity();
@@ -243,8 +239,8 @@ std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacin
     double length = 0.0;  // in spacings
     for (const Index v : gap.loop)
       length += edgeLength(points, v, next[v]) / spacing[v];
-    // Of one with several loops, surfaces of different depth are on its sides.
-    // A point inside would be a spike: it may be far behind.
+    // Small gaps have no points inside: these may be far behind, and would become spikes. Gaps with
+    // several loops are not filled: they are between surfaces of different depth.
     const bool is_small = edges <= most.small && length <= 2.0 * static_cast<double>(most.small) &&
                           gap.triangles.size() + 2 == edges;
     if (gap.loop.size() != edges || !(is_small || edges <= most.edges))

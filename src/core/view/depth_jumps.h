@@ -17,12 +17,12 @@ Indexed<double> spacingOf(const Positions& points, const Execution& execution);
 
 /// Opens the mesh of a view where the depth jumps: at sides that are longer than 4 times the
 /// smaller spacing of their ends (6 times, if they run more across the rays than along them), or
-/// within 5 degrees of the ray and longer than that spacing. What is left is an oriented manifold
-/// with boundary.
+/// within 5 degrees of the ray and longer than that spacing. The rest is an oriented manifold with
+/// boundary.
 ///
-/// Of points that would be in no piece of `min_points` points, and in narrow gaps between surfaces
-/// that meet in one point, the rule is milder: 6 and 8 times, and sides at which the surface goes
-/// straight on at both ends are no jumps. So the rims of scans, which are sampled sparsely, stay.
+/// The rule is milder for points in pieces of fewer than `min_points` points, and in narrow gaps
+/// between surfaces that meet in one point: 6 and 8 times, and a side is no jump if the surface
+/// goes straight on at both ends. So the boundaries of scans, which are sampled sparsely, stay.
 ///
 /// \param points  3 x n.
 /// \param spacing of the points, \see spacingOf.
@@ -44,7 +44,7 @@ struct GapLimits {
 
 /// Fills gaps with the triangles that were opened there.
 ///
-/// \return those that are filled because they have at most GapLimits::edges.
+/// \return the filled gaps, without small ones.
 std::vector<Gap> fillGaps(const Positions& points, const Indexed<double>& spacing,
                           const ViewMesh& view, const GapLimits& most, SphereMesh& mesh);
 

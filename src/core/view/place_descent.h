@@ -4,19 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
-#include <vector>
-
 namespace spherical_param::internal {
-
-/// Every so many points of a cloud, at most a number of them.
-inline std::vector<Index> sampleOf(const Positions& points, Eigen::Index most) {
-  const Eigen::Index n = std::min(points.cols(), most);
-  std::vector<Index> sample;
-  for (Eigen::Index i = 0; i < n; ++i)
-    sample.push_back(static_cast<Index>(i * points.cols() / n));
-  return sample;
-}
 
 /// The middle of the box around points.
 inline Eigen::Vector3d middleOf(const Positions& points) {
@@ -35,16 +23,16 @@ inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Positions& po
       Eigen::Matrix3d(centered * centered.transpose()));
 }
 
-/// Moves a place along axes while a cost falls, with shorter and shorter steps.
+/// Moves a place along axes while a cost falls; then halves the step, down to `min_step`.
 ///
-/// \param most_moves with each step.
-/// \return the cost there.
+/// \param max_moves with each step.
+/// \return the cost at the last place.
 template <typename Cost>
-double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double least_step,
-               int most_moves, Eigen::Vector3d& place) {
+double descend(const Cost& cost, const Eigen::Matrix3d& axes, double step, double min_step,
+               int max_moves, Eigen::Vector3d& place) {
   double best = cost(place);
-  while (step > least_step) {
-    for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < most_moves;) {
+  while (step > min_step) {
+    for (int k = 0, failed = 0, moves = 0; failed < 6 && moves < max_moves;) {
       const Eigen::Vector3d other = place + (k % 2 == 0 ? step : -step) * axes.col(k / 2);
       if (const double found = cost(other); found < best) {
         best = found;

@@ -54,10 +54,10 @@ RayPattern::RayPattern(const Positions& points, const NeighborSearch& search) {
   spread_ = (logarithms - medianOf(distances)).abs().min(1.0).mean();
 }
 
-/// Mean deviation of the logarithm of the angle between neighbouring rays from its median or from a
-/// quadratic function of the direction: pinhole cameras and scanners on a tripod have some.
+/// Mean deviation of the logarithm of the angle between neighbouring rays from its median, or from
+/// a quadratic function of the direction, as pinhole cameras and scanners on a tripod have it.
 double RayPattern::unevenness(const Eigen::Vector3d& place, bool is_quadratic) const {
-  constexpr double least_angle = 1e-12;
+  constexpr double min_angle = 1e-12;
   constexpr double outlier = 0.7;
   constexpr int rounds = 2;
   constexpr int terms = 10;
@@ -66,7 +66,7 @@ double RayPattern::unevenness(const Eigen::Vector3d& place, bool is_quadratic) c
   Eigen::Matrix<double, Eigen::Dynamic, terms> monomials(is_quadratic ? n : 0, terms);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Vector3d d = (points_.col(i) - place).normalized();
-    angle[i] = std::log(d.cross((nearest_.col(i) - place).normalized()).norm() + least_angle);
+    angle[i] = std::log(d.cross((nearest_.col(i) - place).normalized()).norm() + min_angle);
     if (is_quadratic)
       monomials.row(i) << 1.0, d.x(), d.y(), d.z(), d.x() * d.x(), d.x() * d.y(), d.x() * d.z(),
           d.y() * d.y(), d.y() * d.z(), d.z() * d.z();
@@ -87,17 +87,18 @@ double RayPattern::unevenness(const Eigen::Vector3d& place, bool is_quadratic) c
 }
 
 bool RayPattern::isSensor(const Eigen::Vector3d& place) const {
-  // Of sensors up to 0.09, also in coarse steps of depth; from elsewhere, and of objects, from 0.15
-  // on.
+  // Sensors have up to 0.09, also with coarse steps of depth; other places and objects at least
+  // 0.15.
   constexpr double max_unevenness = 0.12;
-  // Of sensors up to 0.34; more if the points are evenly spread over the surface itself.
+  // Sensors have up to 0.34 [spread_]; points that are evenly spread over the surface itself have
+  // more.
   constexpr double max_of_spread = 0.5;
   return unevenness(place, true) < std::min(max_unevenness, max_of_spread * spread_) ||
          isSpreadFrom(place);
 }
 
 bool RayPattern::isSpreadFrom(const Eigen::Vector3d& place) const {
-  // The slope of the logarithms is 1 to 1.4 of scanners, and -0.9 to 0.3 of objects.
+  // The slope of the logarithms is 1 to 1.4 for scanners, and -0.9 to 0.3 for objects.
   constexpr double min_correlation = 0.8;
   const Eigen::ArrayXd distance =
       (points_.colwise() - place).colwise().norm().array().log().transpose();
@@ -125,12 +126,12 @@ std::optional<Eigen::Vector3d> RayPattern::find(int threads) const {
   constexpr int directions = 50;
   constexpr double first_step = 0.2;
   constexpr double coarse_step = 0.01;
-  constexpr double least_step = 5e-4;
-  constexpr int most_moves = 10;
+  constexpr double min_step = 5e-4;
+  constexpr int max_moves = 10;
   const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
   const Eigen::Vector3d middle = middleOf(points_);
   const double extent = extentOf(points_);
-  // A scanner within the points is near where they are densest, in a narrow valley of the cost.
+  // A scanner within the points is where they are densest, in a narrow valley of the cost.
   std::array<Eigen::Vector3d, 2> starts = {densest(), middle};
   std::vector<Eigen::Vector3d> places;
   for (const double radii : {0.3, 0.6, 1.2, 2.5})
@@ -146,7 +147,7 @@ std::optional<Eigen::Vector3d> RayPattern::find(int threads) const {
     for (const bool is_quadratic : {false, true})
       found[i] = descend([&](const Eigen::Vector3d& at) { return unevenness(at, is_quadratic); },
                          axes, first_step * extent,
-                         (is_quadratic ? least_step : coarse_step) * extent, most_moves, starts[i]);
+                         (is_quadratic ? min_step : coarse_step) * extent, max_moves, starts[i]);
   });
   const Eigen::Vector3d best = starts[found[1] < found[0] ? 1 : 0];
   return isSensor(best) ? std::optional(best) : std::nullopt;

@@ -28,12 +28,13 @@ Positions withBehind(const Positions& points, const ViewMesh& view) {
   return all;
 }
 
-/// Signs as a place sees them.
+/// Orientations as a place sees them.
 class Signs {
 public:
   Signs(const Eigen::Vector3d& place, const Positions& points) : place_(place), points_(points) {}
 
-  /// 1 if three vertices are counter-clockwise, seen along the outward triangle.
+  /// 1 if three vertices are counter-clockwise as in an outward triangle, 0 in a plane with the
+  /// place.
   int sign(Index a, Index b, Index c) const {
     return orientation3d(place_, points_.col(a), points_.col(b), points_.col(c));
   }
@@ -47,24 +48,25 @@ private:
   const Positions& points_;
 };
 
-/// Makes the triangles of rounded directions outward in exact arithmetic.
+/// Makes all triangles outward, in exact arithmetic: rounding of the directions may have turned
+/// some.
 class Repair {
 public:
   Repair(const Signs& signs, SphereMesh& mesh, Index behind)
       : signs_(signs), mesh_(mesh), behind_(behind) {}
 
-  /// Flips sides of triangles that are not outward, and takes points out.
+  /// Flips sides of triangles that are not outward, and takes points out where that does not help.
   ///
-  /// \param hidden receives these, ascending.
+  /// \param hidden receives these points, ascending.
   /// \return whether all triangles are outward.
   bool run(std::vector<Index>& hidden) {
-    // Of 600 clouds on lattices, seen along them, none takes more than 6.
-    constexpr int rounds = 30;
+    constexpr int max_rounds = 30;
+    // Rounding turns fewer triangles than this fraction.
+    constexpr double max_inward = 0.1;
     std::vector<Index> inward = inwardTriangles();
-    // A tenth is no rounding.
-    if (10 * inward.size() > static_cast<std::size_t>(mesh_.size()) + 10)
+    if (inward.size() > fractionOf(max_inward, mesh_.slotCount()) + 1)
       return false;
-    for (int round = 0; round < rounds && !inward.empty(); ++round) {
+    for (int round = 0; round < max_rounds && !inward.empty(); ++round) {
       for (const Index t : inward)
         if (isInward(t))
           flipSide(t);
@@ -86,9 +88,7 @@ private:
     return inward;
   }
 
-  bool isInward(Index t) const {
-    return mesh_.vertex(t, 0) >= 0 && !signs_.isOutward(mesh_.vertices(t));
-  }
+  bool isInward(Index t) const { return mesh_.isUsed(t) && !signs_.isOutward(mesh_.vertices(t)); }
 
   void flipSide(Index t) {
     for (int k = 0; k < 3; ++k)
@@ -105,12 +105,12 @@ private:
       }
   }
 
-  /// Takes a vertex out: flips its edges away, while the rest around it is not turned over.
+  /// Takes a vertex out: flips its edges away, unless that would turn triangles over.
   bool takeOut(Index v) {
     const auto flips_away = [&](Index t, int corner) {
-      const int k = nextOf(corner);
+      const int k = (corner + 1) % 3;
       const auto [a, b, c, d] = mesh_.diamond(t, k);
-      // Of the two triangles (c, a, d) and (c, d, b) one is left without v.
+      // The flip makes two triangles (c, a, d) and (c, d, b). The one without v must be outward.
       const bool is_cut = a == v ? signs_.sign(c, d, b) > 0 && signs_.sign(c, a, d) >= 0
                                  : signs_.sign(c, a, d) > 0 && signs_.sign(c, d, b) >= 0;
       return is_cut && mesh_.flip(t, k);
@@ -121,38 +121,31 @@ private:
     return mesh_.merge(v) >= 0;
   }
 
-  static int nextOf(int corner) { return (corner + 1) % 3; }
-
   const Signs& signs_;
   SphereMesh& mesh_;
   Index behind_;
 };
 
-/// Whether the triangles are once around the place: one of them is over a direction.
+/// Whether the triangles are once around the place: only one of them is over the direction of its
+/// middle.
 bool areOnceAround(const Signs& signs, Positions& points, const SphereMesh& mesh) {
-  // The middle of a triangle, the last of the points.
+  const Triangles triangles = mesh.triangles();
+  // The middle of the first triangle, as one more point.
   const auto middle = static_cast<Index>(points.cols());
-  Index of = 0;
-  while (mesh.vertex(of, 0) < 0)
-    ++of;
-  const auto& corners = mesh.vertices(of);
   points.conservativeResize(3, middle + 1);
   points.col(middle) =
-      (points.col(corners[0]) + points.col(corners[1]) + points.col(corners[2])) / 3.0;
-  std::size_t over = 0;
-  for (Index t = 0; t < mesh.size(); ++t)
-    if (mesh.vertex(t, 0) >= 0) {
-      const auto& [a, b, c] = mesh.vertices(t);
-      over += signs.sign(a, b, middle) >= 0 && signs.sign(b, c, middle) >= 0 &&
-                      signs.sign(c, a, middle) >= 0
-                  ? 1
-                  : 0;
-    }
+      (points.col(triangles(0, 0)) + points.col(triangles(1, 0)) + points.col(triangles(2, 0))) /
+      3.0;
+  const auto is_over = [&](const auto& t) {
+    return signs.sign(t[0], t[1], middle) >= 0 && signs.sign(t[1], t[2], middle) >= 0 &&
+           signs.sign(t[2], t[0], middle) >= 0;
+  };
+  const auto over = std::count_if(triangles.colwise().begin(), triangles.colwise().end(), is_over);
   points.conservativeResize(3, middle);
   return over == 1;
 }
 
-/// The mesh from exactly this place; without triangles if there is none.
+/// The mesh from exactly a place; without triangles if there is none.
 ViewMesh triangulateFrom(const Eigen::Vector3d& place, const Positions& points, bool has_behind,
                          const FractionReport& report) {
   ViewMesh view;
@@ -174,7 +167,7 @@ ViewMesh triangulateAround(const Eigen::Vector3d& place, const Positions& points
   const Eigen::Vector3d mean = directions.rowwise().mean();
   if ((mean.transpose() * directions).minCoeff() > 0.0)
     return triangulateFrom(place, points, true, report);
-  // The mean may be off the middle: then points are in front of the place, but not of the mean.
+  // The mean direction may be off: then all points may be in front of the place nevertheless.
   ViewMesh view = triangulateFrom(place, points, false, report);
   return view.triangles.cols() > 0 ? view : triangulateFrom(place, points, true, report);
 }
@@ -195,11 +188,11 @@ Positions directionsFrom(const Eigen::Vector3d& place, const Positions& points) 
 
 ViewMesh triangulateView(const Positions& points, const Eigen::Vector3d& place,
                          const FractionReport& report) {
-  // From farther away, rounding leaves no directions.
-  constexpr double farthest = 0x1p40;
-  if (!(place.cwiseAbs().maxCoeff() < farthest * (1.0 + points.cwiseAbs().maxCoeff())))
+  // From farther away, rounding makes all directions equal.
+  constexpr double max_distance = 0x1p40;
+  if (!(place.cwiseAbs().maxCoeff() < max_distance * (1.0 + points.cwiseAbs().maxCoeff())))
     return {};
-  // Distances of the points: so little that hardly a depth jump looks different.
+  // So small that depth jumps hardly look different [distance of the points].
   constexpr std::array<double, 3> moves = {0.001, 0.004, 0.016};
   constexpr double max_hidden = 0.0005;
   ViewMesh best = triangulateAround(place, points, report);
@@ -221,7 +214,7 @@ ViewMesh triangulateView(const Positions& points, const Eigen::Vector3d& place,
 void flipInView(const Positions& points, ViewMesh& view, const Execution& execution,
                 const std::function<bool()>& ends) {
   const Positions all = withBehind(points, view);
-  Graph graph;  // of which the energy knows the unit only
+  Graph graph;  // gives the energy its unit of length
   std::vector<double> lengths;
   for (const auto& t : view.triangles.colwise())
     lengths.push_back((all.col(t[0]) - all.col(t[1])).norm());

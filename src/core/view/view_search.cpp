@@ -15,15 +15,15 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Sides longer than this many spacings jump.
+/// The depth jumps at longer sides [spacing].
 constexpr double kJump = 4.0;
 
 }  // namespace
 
 bool Sight::isOneLayer() const {
-  // Of 25 scans from their true places: jumps up to 0.05, layers 0.003, roughness 1; all around,
-  // 0.1, 0.034 and 0.3. Of 100 objects from elsewhere, with layers of more than 4 spacings: jumps
-  // from 0.14 on; with thinner ones, roughness from 1.6 on.
+  // Scans from their true places have up to 0.05 jumps, 0.003 layers and a roughness of 1; all
+  // around, 0.1, 0.034 and 0.3. Objects from elsewhere have at least 0.14 jumps, or, if their
+  // layers are within 4 spacings, a roughness of at least 1.6.
   constexpr double max_roughness = 1.3;
   return roughness < max_roughness && jumps < (is_around ? 0.2 : 0.15) &&
          layers < (is_around ? 0.06 : 0.02);
@@ -92,7 +92,7 @@ Sight assessView(const Positions& points, const Indexed<double>& spacing, const 
 
 bool isElevationGrid(const Positions& points) {
   constexpr std::size_t min_lines = 10;
-  // The numbers of lines along x and y of the first so many points.
+  // The numbers of different x and y among the first points.
   const auto lines_of = [&](std::size_t count) {
     std::array<std::size_t, 2> lines{};
     for (Eigen::Index k = 0; k < 2; ++k) {
@@ -106,7 +106,7 @@ bool isElevationGrid(const Positions& points) {
   const auto are_many = [&](const std::array<std::size_t, 2>& lines) {
     return lines[0] * lines[1] > 2 * columnCount(points);
   };
-  // Of few points there are as many lines as of many, unless they are on a grid.
+  // A quick test with few points: unless they are on a grid, their lines are already too many.
   const auto few = static_cast<std::size_t>(4.0 * std::sqrt(static_cast<double>(points.cols())));
   if (are_many(lines_of(std::min(few, columnCount(points)))))
     return false;
@@ -121,16 +121,16 @@ bool isElevationGrid(const Positions& points) {
 }
 
 Eigen::Vector3d farAbove(const Positions& points, const Eigen::Vector3d& axis) {
-  // So far that rays are parallel within a thousandth, and so near that directions differ.
+  // So far that rays are parallel within a thousandth, and near enough for directions to differ.
   constexpr double extents = 1024.0;
   return middleOf(points) + extents * extentOf(points) * axis.normalized();
 }
 
 namespace {
 
-/// The shortest axis of a low sheet, up; none of others.
+/// The shortest axis of a low sheet, upward; nothing for other clouds.
 std::optional<Eigen::Vector3d> axisOfSheet(const Positions& points) {
-  // Terrain has 0.05 to 0.21, objects from 0.28 on.
+  // Terrain has 0.05 to 0.21, objects at least 0.28.
   constexpr double max_flatness = 0.25;
   const auto solver = axesOf(points);
   const Eigen::Vector3d& variances = solver.eigenvalues();
@@ -147,7 +147,7 @@ public:
         pattern_(points, search) {}
 
   std::optional<FoundView> run(const Eigen::Vector3d& viewpoint) {
-    // Smaller clouds are meshed so fast that a search takes longer.
+    // Meshing a smaller cloud takes less time than a search.
     constexpr Eigen::Index min_of_sheet = 5000;
     constexpr Eigen::Index min_searched = 20000;
     reportFraction(report_, 0.0);
@@ -178,15 +178,15 @@ private:
       const Positions sample = points_(Eigen::all, sampleOf(points_, most));
       const Sight sight =
           assessView(sample, spacingOf(sample, execution_), triangulateView(sample, place, {}));
-      // What is all around in the sample is so in the cloud.
+      // If the sample is all around the place, so is the cloud.
       if (!(sight.jumps < max_jumps) ||
           (sight.is_around && source != ViewSource::Given && !pattern_.isSpreadFrom(place)))
         return std::nullopt;
     }
     FoundView found{triangulateView(points_, place, report_), source, {}};
     const Sight sight = assessView(points_, spacing(), found.mesh);
-    // All around a place without a sensor is an object that may fold, unless nothing jumps; before
-    // one may be two layers.
+    // Without a sensor, points all around a place are an object that may fold, unless nothing
+    // jumps; points in front of it may be two layers.
     const bool is_whole = source == ViewSource::Given && sight.jumps == 0.0;
     const bool is_doubtful = sight.is_around ? !is_whole && !pattern_.isSpreadFrom(place)
                                              : sight.isRough() && !pattern_.isSensor(place);
@@ -204,16 +204,16 @@ private:
 
   /// The place nearby from which the depth jumps least.
   Eigen::Vector3d refined(Eigen::Vector3d place) {
-    constexpr int most_moves = 4;
+    constexpr int max_moves = 4;
     const double extent = extentOf(points_);
     const Eigen::Matrix3d axes = axesOf(points_).eigenvectors();
     double least = 1.0;
     std::vector<Index> window;
     Eigen::Vector3d next = place;
     constexpr int rounds = 12;
-    constexpr double least_step = 0.001;
+    constexpr double min_step = 0.001;
     double step = 0.02;
-    for (int round = 0; round < rounds && step > least_step; ++round) {
+    for (int round = 0; round < rounds && step > min_step; ++round) {
       const ViewMesh view = triangulateView(points_, next, report_);
       const double jumps = assessView(points_, spacing(), view).jumps;
       if (jumps < least) {
@@ -234,12 +234,12 @@ private:
           [&](const Eigen::Vector3d& at) {
             return assessView(points, spacing, triangulateView(points, at, {})).jumps;
           },
-          axes, step * extent, 0.6 * step * extent, most_moves, next);
+          axes, step * extent, 0.6 * step * extent, max_moves, next);
     }
     return place;
   }
 
-  /// All points that are seen near some jumps, ascending.
+  /// The points around some jumps, as the place sees them, ascending.
   std::vector<Index> windowsAtJumps(const ViewMesh& view) const {
     constexpr std::size_t windows = 16;
     constexpr std::ptrdiff_t points_of_window = 250;

@@ -14,21 +14,21 @@ namespace spherical_param::internal {
 
 /// How a place sees a cloud.
 struct Sight {
-  /// Share of the edges of the view that are longer than 4 times the smaller spacing of their ends:
-  /// the depth jumps there.
+  /// Fraction of the edges of the view at which the depth jumps: they are longer than 4 times the
+  /// smaller spacing of their ends.
   double jumps = 1.0;
-  /// Share of the points most of whose edges jump, as those of most of their neighbours: jumps are
-  /// lines, but layers behind each other are areas.
+  /// Fraction of the points most of whose edges jump, and most of whose neighbours are such points:
+  /// jumps form lines, but layers behind each other form areas.
   double layers = 1.0;
-  /// Median difference in depth of a point from its neighbours, in distances across the rays: up to
-  /// 1 of noisy scans, from 1.6 on of two layers, however coarse.
+  /// Median difference in depth between a point and its neighbours [distance across the rays]: up
+  /// to 1 for noisy scans, at least 1.6 for two layers.
   double roughness = 1.0;
-  double rough = 1.0;      ///< share of the points where it is above 0.8
+  double rough = 1.0;      ///< fraction of the points with a roughness above 0.8
   bool is_around = false;  ///< points are all around the place
 
   /// Whether the place sees one layer.
   bool isOneLayer() const;
-  /// Whether more is rough than jumps explain: there is noise, or another layer near by.
+  /// Whether more points are rough than jumps explain: there is noise, or another layer nearby.
   bool isRough() const { return rough > 0.15 + 4.0 * jumps; }
 };
 
@@ -44,19 +44,18 @@ struct FoundView {
   Indexed<double> spacing;  ///< of the points, \see spacingOf
 };
 
-/// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, far above a low
-/// sheet, and the place where its rays come from.
+/// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, the source of its
+/// rays, and a place far above a low sheet.
 ///
 /// \param points    3 x n, finite, distinct, of an extent about 1.
 /// \param viewpoint in the unit of the points; the origin if it is unknown.
 /// \param search    among the points.
 /// \return nothing if there is none.
-/// Cost: where there is none, 10 to 50 ms and O(n log n) with a small constant.
+/// Cost: O(n log n), with a small constant if there is none.
 std::optional<FoundView> findView(const Positions& points, const Eigen::Vector3d& viewpoint,
                                   const NeighborSearch& search, const Execution& execution);
 
-/// Whether the points are the heights of at least half of the places of a grid in x and y: a
-/// surface without jumps.
+/// Whether the points have one height at each of at least half of the places of a grid in x and y.
 bool isElevationGrid(const Positions& points);
 
 /// A place far above points, along an axis.
@@ -70,7 +69,7 @@ bool isGiven(const Options& options);
 /// \param unit a power of two [unit of the input].
 Eigen::Vector3d givenPlace(const Positions& nodes, double unit, const Options& options);
 
-/// The directions of nodes from the place that the caller gave; none if there is none.
+/// The directions of nodes from the place that the caller gave; nothing without a place.
 std::optional<Positions> givenDirections(const Positions& nodes, double unit,
                                          const Options& options);
 

@@ -41,7 +41,7 @@ TEST(Parts, SmallSheetsBesideLargeOnesBelongToThem) {
   EXPECT_EQ(findParts(horizontally(half, movedTo(2.2, half))).size(), 2U);
 }
 
-TEST(Parts, AreJoinedAlongARimWhereTheSpacingJumps) {
+TEST(Parts, AreJoinedAlongABoundaryWhereTheSpacingJumps) {
   // Contours of a tube with caps, four times as far apart as their points and those of the caps.
   const double step = 2.0 * kPi / 60;
   std::vector<Eigen::Vector3d> points;
@@ -72,7 +72,7 @@ TEST(Parts, AreNotJoinedToNetsOfPointsInside) {
     for (const Index j : stars.of(i))
       reaching += j < 2000 ? 1 : 0;
   EXPECT_GT(reaching, 500U);
-  EXPECT_EQ(joinedAlongRims(points, agreed, stars).neighbors, agreed.neighbors);
+  EXPECT_EQ(joinedAlongBoundaries(points, agreed, stars).neighbors, agreed.neighbors);
 }
 
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {

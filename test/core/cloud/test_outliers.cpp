@@ -2,8 +2,6 @@
 
 #include "core/graph/graph_helpers.h"
 
-#include <Eigen/Eigenvalues>
-
 namespace spherical_param::test {
 namespace {
 
@@ -44,70 +42,38 @@ TEST(Outliers, ShapesHaveNoneHoweverTheyAreSampled) {
       EXPECT_TRUE(outliersOf(points, mode).empty()) << points.cols() << " points";
 }
 
-/// From the definition in the header, for lists in order of which enough is always left.
-DeviatingPoints byDefinition(const Positions& points, const NeighborLists& lists, double sigma) {
-  const auto n = static_cast<Index>(points.cols());
-  std::set<Index> outliers;
-  const auto neighbors = [&](Index i) {
-    std::vector<Index> left;
-    for (const Index j : rowOf(lists, i))
-      if (left.size() < 16 && outliers.count(j) == 0)
-        left.push_back(j);
-    return left;
-  };
-  DeviatingPoints result;
-  result.scores.resize(columnCount(points));
-  Eigen::Map<Eigen::ArrayXd> scores(result.scores.data(), n);
-  for (bool found = true; found;) {
-    Eigen::ArrayXd distance(n);
-    for (Index i = 0; i < n; ++i)
-      distance[i] =
-          (points(Eigen::all, neighbors(i)).colwise() - points.col(i)).colwise().norm().mean();
-    std::vector<double> counted;
-    for (Index i = 0; i < n; ++i) {
-      if (outliers.count(i) > 0)
-        continue;
-      Eigen::ArrayXd around = distance(neighbors(i));
-      std::sort(around.begin(), around.end());
-      Positions plane(3, 0);
-      for (const Index j : neighbors(i))
-        if (distance[j] <= 2.0 * around[8])
-          plane = horizontally(plane, points.col(j));
-      const Eigen::Vector3d centroid = plane.rowwise().mean();
-      plane.colwise() -= centroid;
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(plane * plane.transpose());
-      const Eigen::Vector3d normal = axes.eigenvectors().col(0);
-      scores[i] = std::abs(normal.dot(points.col(i) - centroid)) / around[8];
-      counted.push_back(std::min(scores[i], 1.0));
-    }
-    const Eigen::Map<const Eigen::ArrayXd> values(counted.data(),
-                                                  static_cast<Eigen::Index>(counted.size()));
-    const double deviation = std::sqrt((values - values.mean()).square().mean());
-    result.threshold = std::max(values.mean() + sigma * deviation, 1.0);
-    const std::size_t before = outliers.size();
-    for (Index i = 0; i < n; ++i)
-      if (scores[i] > result.threshold)
-        outliers.insert(i);
-    found = outliers.size() > before;
-  }
-  result.indices.assign(outliers.begin(), outliers.end());
-  return result;
-}
+// The score of a point above a plane is its height in median mean distances of its neighbours. The
+// higher one is in no neighbour's list.
+TEST(DeviatingPoints, HaveTheScoreAndTheThresholdOfTheDefinition) {
+  for (const double height : {2.0, 5.0}) {
+    const Positions points =
+        horizontally(sheet(21, 0.0, 0.2, 1), Eigen::Vector3d(10.3, 9.6, height));
+    const Index last = 21 * 21;
+    const NeighborLists lists = bruteForceNeighbors(points, 40);
+    const auto nearest = [&](Index i) {
+      std::vector<Index> list = rowOf(lists, i);
+      list.resize(16);
+      return list;
+    };
+    std::vector<double> distances;
+    for (const Index i : nearest(last))
+      distances.push_back(
+          (points(Eigen::all, nearest(i)).colwise() - points.col(i)).colwise().norm().mean());
+    const double score = height / medianOf(distances);
+    const DeviatingPoints found = deviatingPoints(points, lists, 0.0, {});
+    EXPECT_EQ(found.indices, range(last, last + 1));
+    EXPECT_NEAR(found.scores.back(), score, 1e-9);
+    EXPECT_LT(*std::max_element(found.scores.begin(), found.scores.end() - 1), 1e-9);
+    EXPECT_EQ(found.threshold, 1.0);
+    EXPECT_EQ(deviatingPoints(points, untidy(lists), 0.0, {}).scores, found.scores);
 
-TEST(DeviatingPoints, AreThoseOfTheDefinitionHoweverTheListsAreOrdered) {
-  const Positions points = horizontally(randomSphere(600, 4), 1.3 * spiralSphere(9),
-                                        1.33 * spiralSphere(9), 1.6 * spiralSphere(5));
-  const NeighborLists lists = bruteForceNeighbors(points, 60);
-  for (const double sigma : {0.0, 4.0, 12.0, 1000.0}) {
-    const DeviatingPoints expected = byDefinition(points, lists, sigma);
-    EXPECT_EQ(expected.indices.empty(), sigma == 1000.0);
-    const DeviatingPoints found = deviatingPoints(points, lists, sigma, {});
-    EXPECT_EQ(found.indices, expected.indices);
-    EXPECT_NEAR(found.threshold, expected.threshold, 1e-12);
-    ASSERT_EQ(found.scores.size(), expected.scores.size());
-    for (std::size_t i = 0; i < expected.scores.size(); ++i)
-      EXPECT_NEAR(found.scores[i], expected.scores[i], 1e-9);
-    EXPECT_EQ(deviatingPoints(points, untidy(lists), sigma, {}).scores, found.scores);
+    const DeviatingPoints none = deviatingPoints(points, lists, 1000.0, {});
+    EXPECT_TRUE(none.indices.empty());
+    EXPECT_NEAR(none.scores.back(), score, 1e-9);
+    const Eigen::ArrayXd counted =
+        Eigen::Map<const Eigen::ArrayXd>(none.scores.data(), points.cols()).min(1.0);
+    const double deviation = std::sqrt((counted - counted.mean()).square().mean());
+    EXPECT_NEAR(none.threshold, counted.mean() + 1000.0 * deviation, 1e-9);
   }
 }
 

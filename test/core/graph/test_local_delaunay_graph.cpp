@@ -22,7 +22,7 @@ void expectSound(const Positions& points, const NeighborGraph& result) {
 }
 
 TEST(LocalDelaunayGraph, JoinsThePairsOfWhichBothStarsAgree) {
-  // A surface, and one with a rim, whose cells are not bounded.
+  // A closed surface, and one with a boundary, where cells are not bounded.
   Positions dome = randomSphere(200, 1);
   dome.row(2) = 0.5 * dome.row(2).cwiseAbs();
   for (const Positions& points : {randomSphere(150, 1), dome}) {
@@ -83,30 +83,19 @@ Edges gabrielGraph(const Positions& points, const NeighborLists& lists) {
   return edges;
 }
 
-/// Whether a point has fewer than three neighbours: the graph gives it more.
-bool hasWeakPoint(Eigen::Index count, const Edges& edges) {
-  std::vector<int> degrees(static_cast<std::size_t>(count), 0);
-  for (const auto& edge : edges)
-    ++degrees[static_cast<std::size_t>(edge.first)];
-  return *std::min_element(degrees.begin(), degrees.end()) < 3;
-}
-
-TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
-  int compared = 0;
+TEST(LocalDelaunayGraph, WithoutTangentPlanesItHasTheGabrielGraphOfTheLists) {
+  int equal = 0;
   for (std::uint64_t seed = 0; seed <= 60; ++seed) {
     // Ties, too few points, and lists that are too short.
     const Positions points = seed == 0 ? cubeGrid(2) : randomSphere(seed > 30 ? 12 : 9, seed);
     const NeighborLists lists = bruteForceNeighbors(points, 8);
-    const Stars stars = test::starsOf(points, lists);
-    EXPECT_EQ(countWithoutPlane(stars), points.cols());
-    const NeighborGraph result = graphOf(points, lists);
+    EXPECT_EQ(countWithoutPlane(test::starsOf(points, lists)), points.cols());
+    const Edges edges = edgesOf(graphOf(points, lists).graph);
     const Edges expected = gabrielGraph(points, lists);
-    if (!result.bridges.empty() || hasWeakPoint(points.cols(), expected))
-      continue;
-    EXPECT_EQ(edgesOf(result.graph), expected);
-    ++compared;
+    EXPECT_TRUE(std::includes(edges.begin(), edges.end(), expected.begin(), expected.end()));
+    equal += edges == expected ? 1 : 0;
   }
-  EXPECT_GT(compared, 10);
+  EXPECT_GT(equal, 10);  // the others have points of fewer than three neighbours
 }
 
 TEST(LocalDelaunayGraph, SquaresHaveNoDiagonalsAndCloseSheetsAreNotJoinedInside) {

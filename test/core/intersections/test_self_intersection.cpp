@@ -18,22 +18,10 @@ Pairs pairsOf(const Mesh& mesh) {
 // --- An oracle: all pairs, separating axes in integers -------------------------------------------
 
 __extension__ using Wide = __int128;
-using Whole = std::array<Wide, 3>;  ///< for points below 2^30, and the cross products of these
+using Whole = Eigen::Matrix<Wide, 3, 1>;  ///< points below 2^30, and cross products of these
 
-Whole minus(const Whole& a, const Whole& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Whole cross(const Whole& a, const Whole& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Wide dot(const Whole& a, const Whole& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 Whole normalOf(const std::vector<Whole>& t) {
-  return cross(minus(t[1], t[0]), minus(t[2], t[0]));
-}
-bool isZero(const Whole& a) {
-  return a[0] == 0 && a[1] == 0 && a[2] == 0;
+  return (t[1] - t[0]).cross(t[2] - t[0]);
 }
 
 /// Whether the convex hulls of two sets of points, segments or triangles with area, are disjoint:
@@ -41,7 +29,7 @@ bool isZero(const Whole& a) {
 /// Gottschalk, M. Lin and D. Manocha, "OBBTree", 1996). The coordinate axes find most of them.
 bool apart(const std::vector<Whole>& a, const std::vector<Whole>& b) {
   const auto separates = [&](const Whole& axis) {
-    const auto order = [&](const Whole& p, const Whole& q) { return dot(axis, p) < dot(axis, q); };
+    const auto order = [&](const Whole& p, const Whole& q) { return axis.dot(p) < axis.dot(q); };
     const auto [a_low, a_high] = std::minmax_element(a.begin(), a.end(), order);
     const auto [b_low, b_high] = std::minmax_element(b.begin(), b.end(), order);
     return order(*a_high, *b_low) || order(*b_high, *a_low);
@@ -52,7 +40,7 @@ bool apart(const std::vector<Whole>& a, const std::vector<Whole>& b) {
   std::vector<Whole> axes;
   for (const auto* hull : {&a, &b}) {
     for (std::size_t i = 0; i < hull->size(); ++i)
-      sides.push_back(minus((*hull)[(i + 1) % hull->size()], (*hull)[i]));
+      sides.emplace_back((*hull)[(i + 1) % hull->size()] - (*hull)[i]);
     if (hull->size() == 3)
       axes.push_back(normalOf(*hull));
   }
@@ -60,12 +48,13 @@ bool apart(const std::vector<Whole>& a, const std::vector<Whole>& b) {
   others.insert(others.end(), sides.begin(), sides.end());
   for (const Whole& side : sides)
     for (const Whole& other : others)
-      axes.push_back(cross(side, other));
+      axes.push_back(side.cross(other));
   return std::any_of(axes.begin(), axes.end(), separates);
 }
 
 bool intersect(const std::vector<Whole>& a, const std::vector<Whole>& b) {
-  if (isZero(normalOf(a)) || isZero(normalOf(b)))
+  const Whole zero = Whole::Zero();
+  if (normalOf(a) == zero || normalOf(b) == zero)
     return false;
   std::vector<Whole> common;
   std::vector<Whole> only_a;
@@ -84,7 +73,7 @@ bool intersect(const std::vector<Whole>& a, const std::vector<Whole>& b) {
     // Flat: the two normals over the common side are parallel and point the same way.
     const Whole normal_a = normalOf({common[0], common[1], only_a[0]});
     const Whole normal_b = normalOf({common[0], common[1], only_b[0]});
-    return isZero(cross(normal_a, normal_b)) && dot(normal_a, normal_b) > 0;
+    return normal_a.cross(normal_b) == zero && normal_a.dot(normal_b) > 0;
   }
   default:
     return true;
@@ -96,10 +85,8 @@ Pairs bruteForce(const Mesh& mesh) {
   std::vector<std::vector<Whole>> triangles;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     triangles.emplace_back();
-    for (const Index v : mesh.triangles.col(t)) {
-      const Eigen::Vector3d p = mesh.points.col(v);
-      triangles.back().push_back({std::llround(p.x()), std::llround(p.y()), std::llround(p.z())});
-    }
+    for (const Index v : mesh.triangles.col(t))
+      triangles.back().emplace_back(mesh.points.col(v).cast<Wide>());
   }
   Pairs pairs;
   for (std::size_t s = 0; s < triangles.size(); ++s)
@@ -213,7 +200,7 @@ TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
   ASSERT_GT(count, 5000U);
   EXPECT_EQ(foundIn(mesh, count).pairs, all);
   EXPECT_FALSE(foundIn(mesh, count).is_sample);
-  // Whoever has fewer pairs is better, but a sample never is.
+  // Fewer pairs are better, but a sample never is.
   EXPECT_FALSE(foundIn(mesh, 200).areFewerThan(foundIn(mesh, count)));
   EXPECT_TRUE(foundIn(mesh, count).areFewerThan(foundIn(mesh, 200)));
 }

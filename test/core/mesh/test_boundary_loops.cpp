@@ -6,7 +6,7 @@
 namespace spherical_param::test {
 namespace {
 
-TEST(BoundaryLoops, AreThoseOfAnIndependentWalkTheLongestFirst) {
+TEST(BoundaryLoops, AreThoseOfTheDefinitionTheLongestFirst) {
   const Triangles hull = triangulateSphere(spiralSphere(300));
   const auto is_left_out = [](Index v) { return v < 6 || v % 90 == 20; };
   std::vector<Eigen::Index> kept;

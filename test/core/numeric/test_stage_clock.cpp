@@ -34,7 +34,7 @@ TEST(StageClock, NestedProgressIsThatOfTheStageAndItsPart) {
   EXPECT_EQ(stages[0].name + ", " + stages[1].name, "outliers, parts");
 }
 
-TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
+TEST(StageClock, APartHasItsFractionOfTheRemainingTime) {
   Execution user;
   StageClock unlimited(user);
   unlimited.beginPart(0, 2, 0.5, 0.5);
@@ -43,7 +43,7 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   user.time_limit = 1e6;
   StageClock clock(user);
   EXPECT_NEAR(*clock.remaining(), 1e6, 1e3);
-  for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its share
+  for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its time
     clock.beginPart(0, 3, fraction, 0.1);
     EXPECT_NEAR(*clock.remaining(), 1e6 * fraction, 1e3);
     EXPECT_TRUE(clock.hasTimeAgain());

@@ -30,7 +30,7 @@ std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
   return edges;
 }
 
-/// Number of edges of a mesh that another one does not have.
+/// Number of edges of a mesh that another one lacks.
 std::size_t countLost(const Triangles& before, const Triangles& after) {
   const auto left = edgesOf(after);
   std::size_t lost = 0;
@@ -39,7 +39,7 @@ std::size_t countLost(const Triangles& before, const Triangles& after) {
   return lost;
 }
 
-TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
+TEST(FaceMesh, WithoutAnUnwantedHandleKeepsTheRest) {
   const Positions torus = torusCloud(40, 16, 1.0, 0.4);
   const Graph graph = localDelaunayGraph(torus).graph;
   const auto whole = facesOf(torus, graph);
@@ -105,8 +105,8 @@ TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
   EXPECT_TRUE(isSphereOverAll(*mesh, spheres * n));
 }
 
-TEST(FaceMesh, SaysWhatIsNoFace) {
-  // The loop of 20 points and more around a hole is no face.
+TEST(FaceMesh, TrianglesThatFillALoopAreOpen) {
+  // The loop around a hole has more than 20 points.
   const Positions points = sphereWithHoles(1000, 1, 0.4);
   const auto mesh = facesOf(points, localDelaunayGraph(points).graph);
   ASSERT_TRUE(mesh);
@@ -120,20 +120,11 @@ TEST(FaceMesh, SaysWhatIsNoFace) {
   EXPECT_GT(fillings, 15);
 }
 
-TEST(FaceMesh, IsNoneWithoutFaces) {
-  const Positions line = Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(20, 0.0, 19.0);
-  EXPECT_FALSE(meshOf(line, localDelaunayGraph(line).graph));
-}
-
-TEST(FaceMesh, IsNoneOfOneTriangle) {
-  // Both of its sides would be a closed mesh of 3 vertices, which cannot take in the tail.
-  Positions points(3, 5);
-  points << 0, 1, 0, 2, 3, 0, 0, 1, 0, 0, 0, 0, 0, 0.1, 0.3;
-  Triangles triangle(3, 1);
-  triangle << 0, 1, 2;
-  const Graph graph = withEdges(graphOfMesh(points, triangle), {{1, 3, edgeLength(points, 1, 3)},
-                                                                {3, 4, edgeLength(points, 3, 4)}});
-  EXPECT_FALSE(facesOf(points, graph));
+TEST(FaceMesh, NeedsMoreFacesThanOneTriangle) {
+  // A line, and a triangle with a tail: its two sides would be a closed mesh of 3 vertices.
+  const Positions points = positionsOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0.1}, {3, 0, 0.3}});
+  EXPECT_FALSE(facesOf(points, unitGraph(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4}})));
+  EXPECT_FALSE(facesOf(points, unitGraph(5, {{0, 1}, {1, 2}, {0, 2}, {1, 3}, {3, 4}})));
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ TEST(OpenPlaces, AreOverTheOpeningsAloneAndNotWhereTheyAreClosed) {
   }
   const std::vector<Index>& loop = openings.openings[1].loop;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    EXPECT_TRUE(places.isRim(loop[(i + 1) % loop.size()], loop[i]));
-    EXPECT_FALSE(places.isRim(loop[i], loop[(i + 2) % loop.size()]));
+    EXPECT_TRUE(places.isBoundary(loop[(i + 1) % loop.size()], loop[i]));
+    EXPECT_FALSE(places.isBoundary(loop[i], loop[(i + 2) % loop.size()]));
   }
   const Index across = loop[loop.size() / 2];
   std::vector<Index> beside = rowOf(graph, loop[0]);
@@ -32,7 +32,7 @@ TEST(OpenPlaces, AreOverTheOpeningsAloneAndNotWhereTheyAreClosed) {
                               [&](Index v) { return std::count(loop.begin(), loop.end(), v) > 0; }),
                beside.end());
   EXPECT_TRUE(places.isOpen(loop[0], beside.at(0), across));
-  EXPECT_FALSE(places.close(loop));  // it stays a rim
+  EXPECT_FALSE(places.close(loop));  // it stays a boundary
   EXPECT_TRUE(places.close(beside));
   EXPECT_FALSE(places.isOpen(loop[0], beside[0], across));
   EXPECT_TRUE(places.isOpen(loop[0], loop[1], across));

@@ -40,9 +40,7 @@ TEST(Openings, AreABaseIfAllOfTheSurfaceIsOnOneSide) {
   EXPECT_TRUE(is_base(-0.9));
   EXPECT_TRUE(is_base(0.0));
   // Another sphere hangs lower.
-  Positions lower = spiralSphere(1000);
-  lower.row(0).array() += 2.5;
-  lower.row(2).array() -= 1.5;
+  const Positions lower = spiralSphere(1000).colwise() + Eigen::Vector3d(2.5, 0.0, -1.5);
   const Positions above =
       pointsWhere(spiralSphere(2000), [](const auto& p) { return p.z() > -0.9; });
   EXPECT_FALSE(openingsOf(horizontally(above, lower)).front().is_base);
@@ -58,7 +56,7 @@ Positions hexagonalGrid(Index columns, const std::function<bool(Index)>& is_kept
   return positionsOf(points);
 }
 
-TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
+TEST(Openings, TheBoundaryOfALowSheetIsCertainHoweverFewItsPoints) {
   const auto dome = [](double height) {
     Positions points = hexagonalGrid(6, [](Index i) { return i < 36; });
     const Eigen::Vector3d center = points.rowwise().mean();
@@ -72,13 +70,13 @@ TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
 }
 
 TEST(Openings, ThatCurlAreAsWideAsTheLeastSurfaceOverThem) {
-  // Half of a tennis ball: the vector area of its rim is 0.
+  // Half of a tennis ball: the vector area of its boundary is 0.
   const Positions half = pointsWhere(spiralSphere(4000), [](const Eigen::Vector3d& p) {
     return p.x() * p.x() - p.y() * p.y() + 0.3 * p.z() > 0.0;
   });
   const std::vector<Opening> openings = openingsOf(half);
   ASSERT_EQ(openings.size(), 1U);
-  // The cone from the middle of the ball to the rim is no smaller.
+  // The cone from the middle of the ball to the boundary is at least as large.
   EXPECT_GT(openings[0].area, 2.0);
   EXPECT_LE(openings[0].area, openings[0].boundary_length / 2.0);
   EXPECT_NEAR(openings[0].width, 4.0 * openings[0].area / openings[0].boundary_length, 1e-12);
@@ -105,7 +103,7 @@ TEST(Openings, CountFromThreeSpacingsOn) {
   const auto without = [](const std::set<Index>& points) {
     return openingsOf(hexagonalGrid(20, [&](Index i) { return points.count(i) == 0; }));
   };
-  EXPECT_EQ(without({209, 210, 211, 229, 230}).size(), 1U);  // the rim of the grid
+  EXPECT_EQ(without({209, 210, 211, 229, 230}).size(), 1U);  // the boundary of the grid
   const std::vector<Opening> openings = without({209, 210, 211, 229, 230, 250});
   ASSERT_EQ(openings.size(), 2U);
   EXPECT_EQ(openings[1].loop.size(), 12U);

@@ -73,10 +73,8 @@ TEST(ViewMesh, LeavesOutWhatIsHiddenExactly) {
 
 TEST(ViewMesh, OfALatticeFromBetweenItsPointsDoesNotIntersectItself) {
   // Most rays go through several points, or along planes of them.
-  std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector3i& p : latticeOf({6, 6, 6}))
-    points.emplace_back(p.cast<double>());
-  const Positions lattice = positionsOf(points);
+  const Positions lattice =
+      pointsAt(216, [](Index i) { return Eigen::Vector3d(i / 36, i / 6 % 6, i % 6); });
   for (const auto& [i, j] : {std::pair(0, 1), {0, 215}, {3, 100}, {40, 41}, {7, 210}}) {
     const Eigen::Vector3d place = (lattice.col(i) + lattice.col(j)) / 2.0;
     const ViewMesh view = triangulateView(lattice, place, {});

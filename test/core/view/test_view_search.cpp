@@ -76,7 +76,7 @@ TEST(ViewSearch, FindsNoneOfObjects) {
   EXPECT_FALSE(found(horizontally(sheet, part)));
 }
 
-TEST(ViewSearch, TellsElevationGrids) {
+TEST(ViewSearch, RecognisesElevationGrids) {
   const Positions grid = gridOf(20, 30, [](int row, int column) {
     return Eigen::Vector3d(column, 0.5 * row, std::sin(0.3 * column));
   });
