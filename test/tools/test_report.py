@@ -199,7 +199,7 @@ class Report(ToolTest):
         for name in names:
             pathlib.Path(name).parent.mkdir()
         pathlib.Path("in.ply").rename(names[0])
-        options = ["-starts=7", "-smoothing", "2", "-report", "page.HTML", "-json", "report.json", "-quiet"]
+        options = ["-seed=7", "-smoothing", "2", "-report", "page.HTML", "-json", "report.json", "-quiet"]
         run("reconstruction", *names, *options)
         page = Page("page.HTML")
         self.assertIn("content=\"default-src 'none'; script-src 'sha256-", page.html)
