@@ -244,7 +244,7 @@ const std::vector<Shape>& allShapes() {
              {cone({-0.21, 0.095, -0.22}, 0.048, {-0.25, 0.095, -0.40}, 0.036), 0.01},
              {cone({-0.25, 0.095, -0.40}, 0.040, {-0.21, 0.095, -0.41}, 0.032), 0.01}})},
       {"torus", "a torus (genus 1)", arc(origin, x, y, 0.36, 0.14, 2.0 * quarter)},
-      {"bowl", "a shell without its lid (open)", ball(origin, 0.5),
+      {"bowl", "a shell with one opening", ball(origin, 0.5),
        [](const Vector3d& p) { return 0.15 - p.z(); }},
       {"pair", "two spheres (two pieces)", body({{ball(-0.3 * x, 0.2)}, {ball(0.3 * x, 0.2)}})},
       {"chair", "a chair of tubes (genus 4)",
@@ -326,7 +326,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
 
   std::vector<Vector3i> cubes;  // with a vertex, by their lowest nodes
   std::vector<Vector3d> vertices;
-  std::vector<bool> is_on_rim;  // of the opening
+  std::vector<bool> is_on_boundary;  // of the opening
   std::unordered_map<int, Index> vertex_of_cube;
   const std::function<void(const Vector3i&, int)> visit = [&](const Vector3i& low, int size) {
     const Vector3d center = position(low.cast<double>().array() + 0.5 * size);
@@ -352,7 +352,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
     vertex_of_cube[key(low)] = static_cast<Index>(cubes.size());
     cubes.push_back(low);
     vertices.emplace_back(sum.hnormalized());
-    is_on_rim.push_back(is_open);
+    is_on_boundary.push_back(is_open);
   };
   visit({0, 0, 0}, cells);
 
@@ -368,9 +368,9 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
       const auto vertex = [&](const Vector3i& other) { return vertex_of_cube.at(key(other)); };
       std::array<Index, 4> around = {vertex(cube), vertex(cube - a), vertex(cube - a - b),
                                      vertex(cube - b)};
-      // No triangle has all its vertices on the rim.
-      const auto is_rim = [&](Index v) { return is_on_rim[static_cast<std::size_t>(v)]; };
-      if (is_rim(around[0]) && is_rim(around[2]))
+      // No triangle has all its vertices on the boundary loop.
+      const auto is_boundary = [&](Index v) { return is_on_boundary[static_cast<std::size_t>(v)]; };
+      if (is_boundary(around[0]) && is_boundary(around[2]))
         std::rotate(around.begin(), around.begin() + 1, around.end());
       triangles.emplace_back(around[0], around[1], around[2]);
       triangles.emplace_back(around[0], around[2], around[3]);
@@ -380,7 +380,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
   mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
   forEach(vertices.size(), [&](std::size_t i) {
     Vector3d p = project(vertices[i], shape.distance);
-    for (int k = 0; k < 20 && is_on_rim[i]; ++k)  // alternating projections
+    for (int k = 0; k < 20 && is_on_boundary[i]; ++k)  // alternating projections
       p = project(project(p, shape.distance), shape.opening);
     mesh.vertices.col(static_cast<Eigen::Index>(i)) = p;
   });

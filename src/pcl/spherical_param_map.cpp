@@ -51,7 +51,7 @@ std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangle
 struct VertexPairs {
   std::vector<spherical_param::PointPair> pairs;
   std::vector<std::size_t> numbers;        ///< of each pair among those of the caller
-  std::vector<ImpossiblePair> impossible;  ///< pairs of the caller that are none of vertices
+  std::vector<ImpossiblePair> impossible;  ///< pairs of the caller that name no two vertices
 };
 
 /// The vertex of a point of a cloud; -1: none.

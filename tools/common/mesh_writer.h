@@ -15,7 +15,7 @@ namespace spherical_param::tools {
 /// VTK 9.1): those of PCL for PLY and OBJ and VTK's for PLY report success on a full disk; VTK's
 /// for STL removes whatever has the name of its output when the disk is full, be it a device;
 /// VTK's PLY has no normals, PCL's PLY no alpha, PCL's OBJ no colours, VTK's text 6 digits; and
-/// neither knows OFF.
+/// neither writes OFF.
 ///
 /// No more than a block of the file is in memory.
 ///

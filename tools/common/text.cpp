@@ -20,7 +20,7 @@ std::string withoutControls(std::string_view text, char replacement) {
   return result;
 }
 
-/// from_chars() knows no leading plus sign, which people write.
+/// from_chars() reads no leading plus sign, which people write.
 std::string_view withoutPlus(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
     text.remove_prefix(1);

@@ -107,7 +107,7 @@ TEST(MultilevelEmbedding, ABarrierThatHardlyPullsIsOnCoarseLevelsAlone) {
 }
 
 TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
-  // The lower two thirds of a sphere: the rim is a hole to pull the sphere through.
+  // The lower two thirds of a sphere: the boundary is a hole to pull the sphere through.
   const Graph open = openGraph(3000, 1000);
   for (const Setting& options : {Setting(), converging(1e-9)}) {
     const Embedding result = solve(open, options);
