@@ -8,6 +8,7 @@ two surfaces. FOLDER gets the pictures.
 
 import base64
 import json
+import math
 import pathlib
 import re
 import sys
@@ -61,16 +62,7 @@ FIRST_VIEW = """
       const [a, b, c] = [0, 1, 2].map((k) => at(corners[t + k]));
       facing += b.sub(a).cross(c.sub(a)).dot(view.toward);
     }
-    return [view.up.toArray(), view.toward.toArray(), facing];"""
-
-
-# How far the points of the mesh reach to the edges of the view, 1 at most.
-REACH = """
-    report_views.draw();
-    report_views.aimView('mesh');
-    const {positions, camera} = report_views;
-    return Array.from({length: positions.length / 3}, (_, v) => report_views.vector(v).project(camera))
-      .reduce((most, {x, y}) => Math.max(most, Math.abs(x), Math.abs(y)), 0);"""
+    return [view.up.toArray(), facing];"""
 
 
 def seen_from(page, place):
@@ -130,10 +122,6 @@ class ReportPage(unittest.TestCase):
             self.assertGreater(picture["colors"], 100, view)
             self.assertTrue(0.05 < picture["covered"] < 0.95, (view, picture))
 
-    def check_findings(self, *findings):
-        for finding in findings:
-            self.assertIn(f"✓ {finding}", self.text("findings"))
-
     def changed(self, before):
         now = self.pictures()
         return tuple(view for view in VIEWS if now[view]["hash"] != before[view]["hash"])
@@ -170,15 +158,14 @@ class ReportPage(unittest.TestCase):
     def test_says_the_verdict_its_reasons_and_the_numbers_of_the_report(self):
         self.open(SOUND)
         self.assertEqual(self.text("verdict-words"), "A sound mesh.")
-        self.check_findings("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections")
+        for finding in ("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections"):
+            self.assertIn(f"✓ {finding}", self.text("findings"))
         for part in ("stages", "numbers", "options", "levels"):
             self.assertGreater(len(self.text(part).splitlines()), 2, part)
         report = json.loads(self.run_script(
             "const json = document.getElementById('json'); json.open = true;"
             "json.dispatchEvent(new Event('toggle')); return json.lastChild.textContent;"))
         self.assertEqual(self.text("verdict-words"), report["verdict"])
-        for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
-            self.assertIn(row, self.text("numbers"))
         self.open(OPEN)
         self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening; 2 stray points left out.")
         self.assertIn("opening", self.text("warnings"))
@@ -194,65 +181,37 @@ class ReportPage(unittest.TestCase):
             self.assertAlmostEqual(pictures["cloud"]["covered"] / pictures["mesh"]["covered"], 1, delta=0.2)
             self.save(name)
 
-    def assert_near(self, vector, other):
-        for x, y in zip(vector, other, strict=True):
-            self.assertAlmostEqual(x, y, delta=0.02)
-
     def camera(self):
         return self.run_script("const {up, position} = report_views.camera;"
                                "return [up.toArray(), position.clone().normalize().toArray()]")
 
-    def test_opens_upright_and_from_the_side_that_shows_most(self):
-        self.open(SOUND)
-        up, toward = self.camera()
-        self.assertEqual(up, [0, 0, 1])
-        # The hand is flat, and its fingers are next to each other along x.
-        self.assertLess(toward[1], -0.8)
-        self.assertGreater(toward[2], 0)
-        self.run_script("report_views.lookAt(0)")
-        self.element("reset").click()
-        self.assertEqual(self.camera(), [up, toward])
-        # The same hand with y up.
-        up, turned, _ = self.run_script(FIRST_VIEW, [1, 0, 0, 0, 0, 1, 0, -1, 0], False, True)
-        self.assertEqual(up, [0, 1, 0])
-        self.assert_near(turned, (toward[0], toward[2], -toward[1]))
-        # Where its side is in front, it is turned to show the palm or the back.
-        up, toward, _ = self.run_script(FIRST_VIEW, [0, 1, 0, -1, 0, 0, 0, 0, 1], False, True)
-        self.assertEqual(up, [0, 0, 1])
-        self.assertGreater(abs(toward[0]), 0.5)
-
-    def test_what_a_depth_camera_saw_is_looked_at_from_there_and_any_open_mesh_at_its_front(self):
-        self.open(CAMERA)
-        up, toward = self.camera()
-        self.assertEqual(up, [0, -1, 0])
-        self.assert_near(toward, (0, 0, -1))
-        # Along -z y points up.
-        up, toward, _ = self.run_script(FIRST_VIEW, [1, 0, 0, 0, -1, 0, 0, 0, -1], False, False)
-        self.assertEqual(up, [0, 1, 0])
-        self.assert_near(toward, (0, 0, 1))
-        for flip in (False, True):
-            for rows in ([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 1, 1, 0, 0, 0, 1, 0], [0, 0, -1, 1, 0, 0, 0, -1, 0],
-                         [1, 0, 0, 0, 0, -1, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, -1, 0]):  # fmt: skip
-                _, _, facing = self.run_script(FIRST_VIEW, rows, flip, False)
-                self.assertGreater(facing, 0, (rows, flip))
-
-    def test_opens_as_the_sensor_sees_it(self):
-        distances = ("const {camera, origin} = report_views;"
-                     "return [camera.position.length(), origin.length(), start_distance]")  # fmt: skip
+    def test_opens_upright_at_the_side_that_shows_most_or_as_the_sensor_sees_it(self):
         for name, page, place, up, toward in (
+                ("sound", SOUND, None, [0, 0, 1], None),
+                ("camera", CAMERA, None, [0, -1, 0], (0, 0, -1)),
                 ("ahead", CAMERA, [0, 0, 0], [0, -1, 0], (0, 0, -1)),
-                ("down", SOUND, [0, 0, 100], [0, 1, 0], (0, 0, 1)),
                 ("level", SOUND, [100, 0, 0], [0, 0, 1], (1, 0, 0))):  # fmt: skip
-            self.open(seen_from(page, place))
-            for _ in range(2):
-                self.assertEqual(self.camera()[0], up)
-                self.assert_near(self.camera()[1], toward)
-                distance, of_sensor, most = self.run_script(distances)
-                self.assertAlmostEqual(distance, of_sensor if page == CAMERA else most, delta=1e-3)
-                self.assertAlmostEqual(self.run_script(REACH), 1 / 1.04, delta=0.001)
-                self.run_script("report_views.lookAt(0)")
-                self.element("reset").click()
+            self.open(seen_from(page, place) if place else page)
+            start = self.camera()
+            self.assertEqual(start[0], up, name)
+            if toward:
+                self.assertLess(math.dist(start[1], toward), 0.02)
+            else:
+                # The hand is flat, and its fingers are next to each other along x.
+                self.assertLess(start[1][1], -0.8)
+                self.assertGreater(start[1][2], 0)
+            self.run_script("report_views.lookAt(0)")
+            self.element("reset").click()
+            self.assertEqual(self.camera(), start, name)
             self.save(f"seen_{name}")
+
+    def test_an_open_mesh_is_looked_at_from_its_front_and_one_with_y_up_upright(self):
+        self.open(CAMERA)
+        for flip in (False, True):
+            for rows in ([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, -1, 1, 0, 0, 0, -1, 0], [1, 0, 0, 0, 0, -1, 0, 1, 0]):
+                self.assertGreater(self.run_script(FIRST_VIEW, rows, flip, False)[1], 0, (rows, flip))
+        self.open(SOUND)
+        self.assertEqual(self.run_script(FIRST_VIEW, [1, 0, 0, 0, 0, 1, 0, -1, 0], False, True)[0], [0, 1, 0])
 
     def test_several_surfaces_are_shown_together(self):
         self.open(PAIR)
@@ -260,10 +219,6 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(self.text("size"), "3,000 vertices, 5,992 triangles")
         self.assertIn("2 surfaces together", self.text("shown"))
         self.assertIn("Triangles 5,992", self.text("numbers"))
-        self.check_findings("Closed", "Manifold", "Oriented", "No self-intersections")
-        self.assertEqual(2, self.run_script(
-            "const {triangles} = report_views;"
-            "return findFlags(new Uint8Array(triangles.length / 3).fill(1), triangles)[0].places.length"))
         self.assertFalse(self.element("view-sphere").is_displayed())
         self.check_pictures(self.pictures(VIEWS[:2]))
         self.save("pair")
@@ -272,10 +227,6 @@ class ReportPage(unittest.TestCase):
         for page, mode in ((SOUND, "place"), (OPEN, "suspicious")):
             self.open(page)
             self.assertEqual(self.element("color").get_property("value"), mode)
-        first_mode = "return firstMode(findFlags(new Uint8Array([arguments[0]]), [0, 1, 2]))"
-        for marks in (0, 1, 2, 4, 8, 9):
-            mode = "place" if marks in (0, 8) else "suspicious"
-            self.assertEqual(self.run_script(first_mode, marks), mode, marks)
 
     def test_turning_or_zooming_one_view_does_so_in_all(self):
         self.open(SOUND)
@@ -323,8 +274,7 @@ class ReportPage(unittest.TestCase):
     def test_a_mesh_with_handles_has_no_sphere(self):
         self.open(HANDLES)
         self.assertEqual(self.text("verdict-words"), "A sound mesh with 1 handle.")
-        self.check_findings("Closed", "Genus 1", "One component", "No self-intersections")
-        self.assertIn("Handles 1", self.text("numbers"))
+        self.assertIn("✓ Genus 1", self.text("findings"))
         self.assertFalse(self.element("view-sphere").is_displayed())
         values = [option.get_attribute("value") for option in Select(self.element("color")).options]
         self.assertEqual(values, ["suspicious", "plain"])

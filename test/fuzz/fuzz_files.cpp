@@ -7,9 +7,9 @@
 #include "common/point_pairs.h"
 #include "fuzz_input.h"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <sstream>
 
 namespace {
@@ -17,35 +17,17 @@ namespace {
 using namespace spherical_param::tools;
 using fuzz::require;
 
-/// A file in memory with a name that the tools take for one of theirs: a link in $TMPDIR.
-class MemoryFile {
-public:
-  explicit MemoryFile(const std::string& extension) : descriptor_(memfd_create("input", 0)) {
-    const char* const directory = std::getenv("TMPDIR");
-    const std::string process = std::to_string(getpid());
-    path_ = std::string(directory == nullptr ? "/tmp" : directory) + "/fuzz_" + process + extension;
-    unlink(path_.c_str());
-    const std::string file = "/proc/" + process + "/fd/" + std::to_string(descriptor_);
-    require(descriptor_ >= 0 && symlink(file.c_str(), path_.c_str()) == 0, "a file can be made");
-  }
-  ~MemoryFile() {
-    unlink(path_.c_str());
-    close(descriptor_);
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const std::string& path() const { return path_; }
-  void fill(const void* bytes, std::size_t size) {
-    require(ftruncate(descriptor_, 0) == 0 &&
-                pwrite(descriptor_, bytes, size, 0) == static_cast<ssize_t>(size),
-            "a file can be filled");
-  }
-
-private:
-  int descriptor_;
-  std::string path_;
-};
+/// Writes a file of this process in $TMPDIR, with a name that the tools take for one of theirs.
+std::string fileOf(const void* bytes, std::size_t size, const std::string& extension) {
+  const char* const directory = std::getenv("TMPDIR");
+  const std::string path = std::string(directory == nullptr ? "/tmp" : directory) + "/fuzz_" +
+                           std::to_string(getpid()) + extension;
+  unlink(path.c_str());  // to overwrite a file waits for the disk
+  std::ofstream file(path, std::ios::binary);
+  file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  require(file.flush().good(), "a file can be written");
+  return path;
+}
 
 template <typename T>
 bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -77,11 +59,10 @@ CloudReconstruction meshedSphere(int count) {
   const spherical_param::Positions sphere = spherical_param::test::spiralSphere(count);
   std::ostringstream points;
   points << sphere.transpose() << '\n' << sphere.col(0).transpose() << "\nnan 0 0\n";
-  MemoryFile file(".xyz");
-  file.fill(points.str().data(), points.str().size());
+  const std::string file = fileOf(points.str().data(), points.str().size(), ".xyz");
   Console console(Detail::Nothing);
   CloudReconstruction cloud;
-  reconstructCloud(file.path(), {}, console, cloud);
+  reconstructCloud(file, {}, console, cloud);
   return cloud;
 }
 
@@ -106,13 +87,12 @@ void readAsPointPairs(const std::string& path) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const std::string extension = FUZZED_EXTENSION;
-  static MemoryFile file(extension);
-  file.fill(bytes, size);
+  const std::string file = fileOf(bytes, size, extension);
   try {
     if (extension == ".txt")
-      readAsPointPairs(file.path());
+      readAsPointPairs(file);
     else
-      readAsCloud(file.path());
+      readAsCloud(file);
   } catch (const ToolError& error) {
     require(std::strlen(error.what()) > 0 && !error.remedy().empty(),
             "an error has its cause and its remedy");

@@ -93,7 +93,7 @@ private:
   std::size_t at_ = 0;
 };
 
-/// Point i of n of one of seven shapes that are hard to mesh.
+/// Point i of n of one of five shapes that are hard to mesh.
 inline Eigen::Vector3d onShape(int shape, int i, double n) {
   using test::kPi;
   using test::onCircle;
@@ -101,18 +101,14 @@ inline Eigen::Vector3d onShape(int shape, int i, double n) {
   const double z = 1.0 - (2.0 * i + 1.0) / n;
   const Eigen::Vector3d on_sphere = onCircle(2.4 * i, std::sqrt(std::max(0.0, 1.0 - z * z)), z);
   switch (shape) {
-  case 1:  // circles, one above the other
-    return onCircle(kPi * i / 6.0, 1.0, i / 12);
   case 2:  // a knot on a torus
     return onCircle(6.0 * kPi * t, 1.0 + 0.4 * std::cos(10.0 * kPi * t),
                     0.4 * std::sin(10.0 * kPi * t));
-  case 3:  // a curve of powers
-    return {t, t * t, t * t * t};
-  case 4:  // a long thin limb on a sphere
+  case 1:  // a long thin limb on a sphere
     return i % 2 == 0 ? on_sphere : onCircle(2.4 * i, 0.05, 1.0 + 4.0 * t);
-  case 5:  // a lattice
+  case 3:  // a lattice
     return {i % 4 + 0.0, i / 4 % 4 + 0.0, i / 16 + 0.0};
-  case 6:  // two spheres far apart
+  case 4:  // two spheres far apart
     return on_sphere + 1e6 * (i % 2) * Eigen::Vector3d::UnitX();
   default:
     return on_sphere;
@@ -122,8 +118,8 @@ inline Eigen::Vector3d onShape(int shape, int i, double n) {
 /// Point i of n in one of many encodings; without bytes, on a shape.
 inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, int shape, Eigen::Index i,
                                  Eigen::Index n) {
-  const std::uint8_t kind = bytes.byte() % 12;
-  const bool is_of_earlier = (kind >= 4 && kind <= 6) || kind == 9;
+  const std::uint8_t kind = bytes.byte() % 10;
+  const bool is_of_earlier = (kind >= 3 && kind <= 5) || kind == 7;
   Eigen::Vector3d earlier = Eigen::Vector3d::Zero();
   if (is_of_earlier && i > 0)
     earlier = points.col(bytes.byte() % i);
@@ -133,11 +129,8 @@ inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, int shap
   case 2:
     return {bytes.raw<double>(), bytes.raw<double>(), bytes.raw<double>()};
   case 3:
-    return Eigen::Vector3f(bytes.raw<float>(), bytes.raw<float>(), bytes.raw<float>())
-        .cast<double>();
-  case 4:
     return earlier;
-  case 5: {  // a unit in the last place beside it
+  case 4: {  // a unit in the last place beside it
     const std::uint8_t how = bytes.byte();
     for (int axis = 0; axis < 3; ++axis) {
       const int steps = ((how >> (2 * axis)) & 3) - 1;
@@ -147,22 +140,17 @@ inline Eigen::Vector3d pointFrom(Bytes& bytes, const Positions& points, int shap
     }
     return earlier;
   }
-  case 6:
+  case 5:
     earlier[static_cast<Eigen::Index>(bytes.below(3))] = bytes.real();
     return earlier;
-  case 7: {  // lattices of any scale
-    const int exponent = bytes.raw<std::int16_t>() % 1075;
-    return Eigen::Vector3d(bytes.byte() % 7, bytes.byte() % 7, bytes.byte() % 7)
-        .unaryExpr([&](double x) { return std::ldexp(x - 3.0, exponent); });
-  }
-  case 8:
+  case 6:
     return {bytes.real(), bytes.real(), bytes.real()};
-  case 9: {  // a cluster
+  case 7: {  // a cluster
     const double scale = std::ldexp(1.0, -static_cast<int>(bytes.byte()));
     return earlier + scale * Eigen::Vector3d(bytes.byte() - 128.0, bytes.byte() - 128.0,
                                              bytes.byte() - 128.0);
   }
-  case 10: {  // in a plane, on a line
+  case 8: {  // in a plane, on a line
     const double a = bytes.byte() - 128.0;
     const double b = bytes.byte() % 4;
     return {a, b, a + 2.0 * b};
@@ -179,7 +167,7 @@ inline Positions pointsFrom(Bytes& bytes) {
   const std::uint8_t range = bytes.byte();
   Positions points(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    points.col(i) = pointFrom(bytes, points, range / 8 % 7, i, n);
+    points.col(i) = pointFrom(bytes, points, range / 8 % 5, i, n);
     if (range < 200)
       points.col(i) = points.col(i).unaryExpr(
           [](double x) { return std::isfinite(x) && std::abs(x) <= 1e100 ? x : 0.0; });
@@ -197,37 +185,13 @@ inline Positions tamed(const Positions& points) {
       [](double x) { return std::isfinite(x) ? std::clamp(x, -1e150, 1e150) : 0.0; });
 }
 
-/// Lists of `count` points, in range or not.
-inline NeighborLists arbitraryLists(Bytes& bytes, std::size_t count, std::size_t n, bool in_range) {
-  NeighborLists lists;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t size = bytes.below(12);
-    for (std::size_t k = 0; k < size && n > 0; ++k)
-      lists.indices.push_back(bytes.index(n, in_range));
-    lists.offsets.push_back(lists.indices.size());
-  }
-  const int fault = in_range ? 0 : bytes.byte() % 8;
-  if (fault == 1)
-    lists.offsets.clear();
-  else if (fault == 2)
-    lists.offsets.pop_back();
-  else if (fault == 3)
-    lists.offsets.push_back(lists.indices.size());
-  else if (fault == 4 || fault == 5)
-    lists.offsets[bytes.below(lists.offsets.size())] =
-        fault == 4 ? bytes.raw<std::size_t>() : bytes.byte();
-  else if (fault == 6)
-    lists.indices.push_back(bytes.index(n));
-  else if (fault == 7 && !lists.indices.empty())
-    lists.indices.pop_back();
-  return lists;
+/// Limits the time of the work; a value that is out of range is kept.
+inline int atMost(int most, int value, int range) {
+  return value > most && value <= range ? most : value;
 }
 
 /// What callbacks of the caller throw; it must come out as it is.
-struct CallersFault {
-  std::size_t number = 0;
-};
-constexpr CallersFault kFaultOfSearch{1U << 20U};
+struct CallersFault {};
 
 /// A progress callback that may end the work, and has seen what it may see.
 class Watch {
@@ -244,15 +208,6 @@ public:
   bool listens() const { return listens_; }
   bool hasEnded() const { return calls_ > at_; }
   bool throws() const { return throws_; }
-  std::size_t at() const { return at_; }
-  /// Ends work that would take too long.
-  void cancelAt(std::size_t call) {
-    listens_ = true;
-    if (call < at_) {
-      throws_ = false;
-      at_ = call;
-    }
-  }
   bool operator()(const Progress& progress) {
     require(!hasEnded(), "the callback is not called again after it ended the work");
     require(std::this_thread::get_id() == caller_, "it is called from the caller's thread");
@@ -260,7 +215,7 @@ public:
     require(progress.fraction >= 0.0 && progress.fraction <= 1.0, "fractions are in [0, 1]");
     ++calls_;
     if (hasEnded() && throws_)
-      throw CallersFault{at_};
+      throw CallersFault();
     return !hasEnded();
   }
 
@@ -272,7 +227,7 @@ private:
   std::thread::id caller_ = std::this_thread::get_id();
 };
 
-enum class Ending { Answer, InvalidInput, ComputeError, AsTheWatchAsked, FaultOfSearch };
+enum class Ending { Answer, InvalidInput, ComputeError, AsTheWatchAsked };
 
 /// Calls. Any exception that is not documented is a finding, and so is work that the callback ended
 /// but that goes on. \param message receives that of the exception.
@@ -284,13 +239,9 @@ Ending endingOf(const Watch& watch, const Call& call, std::string& message) {
   } catch (const Cancelled&) {
     require(watch.hasEnded() && !watch.throws(), "Cancelled comes out if it was asked for");
     return Ending::AsTheWatchAsked;
-  } catch (const CallersFault& fault) {
-    if (fault.number != kFaultOfSearch.number) {
-      require(watch.hasEnded() && watch.throws() && fault.number == watch.at(),
-              "the exception of the callback comes out");
-      return Ending::AsTheWatchAsked;
-    }
-    ending = Ending::FaultOfSearch;
+  } catch (const CallersFault&) {
+    require(watch.hasEnded() && watch.throws(), "the exception of the callback comes out");
+    return Ending::AsTheWatchAsked;
   } catch (const InvalidInput& error) {
     ending = Ending::InvalidInput;
     message = error.what();

@@ -38,6 +38,8 @@ Options optionsFrom(Bytes& bytes) {
     options.min_points = bytes.integerOr(8);
   }
   options.topology = which / 16 % 2 != 0 ? TopologyMode::Scan : TopologyMode::Sphere;
+  paper.max_iterations = atMost(3000, paper.max_iterations, std::numeric_limits<int>::max());
+  options.smoothing = atMost(300, options.smoothing, 10000);
   return withTopology(options);
 }
 
@@ -51,7 +53,8 @@ bool areRight(const Options& options) {
   }
 }
 
-/// Makes a search that answers correctly, or from bytes.
+/// Makes a search that answers correctly, or by any lists; sometimes with a point that there is
+/// not.
 class Search {
 public:
   Search(Bytes bytes, const Positions& points)
@@ -59,57 +62,45 @@ public:
     const std::uint8_t how = bytes.byte();
     is_right_ = how < 128;
     is_in_range_ = how < 200;
-    throws_ = how >= 240;
-    wrong_at_ = bytes.byte() % 4U;
   }
   NeighborSearch operator()(const std::vector<Index>& some) {
-    require(some_.empty(), "one search is made");
     require(std::is_sorted(some.begin(), some.end()), "points are ascending");
     require(some.size() == firstAtPlaces(finiteOf(points_)).size() &&
                 firstAtPlaces(points_(Eigen::all, some)).size() == some.size(),
             "it is made of one point at each position");
-    some_ = some;
-    return [this, right = test::bruteForceFactory(tamed_)(some)](const std::vector<Index>& queries,
-                                                                 int count) {
-      require(count >= 3, "a search is for 3 neighbours or more");
-      require(areSome({{0, queries.size()}, queries}, 1), "a search is at points it was made of");
-      require(!was_bad_ && !has_thrown_, "the search is not asked again after a wrong answer");
-      if (is_right_ || calls_++ < wrong_at_)
-        return right(queries, count);
-      has_thrown_ = throws_;
-      if (throws_)
-        throw kFaultOfSearch;
-      NeighborLists lists = arbitraryLists(
-          bytes_, queries.size(),
-          is_in_range_ ? some_.size() : static_cast<std::size_t>(points_.cols()), is_in_range_);
-      if (is_in_range_)
-        for (Index& index : lists.indices)
-          index = some_[static_cast<std::size_t>(index)];
-      was_bad_ = !areSome(lists, queries.size());
-      return lists;
+    return [this, some, right = test::bruteForceFactory(tamed_)(some)](
+               const std::vector<Index>& queries, int count) {
+      for (const Index query : queries)
+        require(std::binary_search(some.begin(), some.end(), query),
+                "a search is at points it was made of");
+      require(!was_bad_, "the search is not asked again after a wrong answer");
+      return is_right_ ? right(queries, count) : anyLists(queries.size(), some);
     };
   }
   bool wasBad() const { return was_bad_; }
-  bool hasThrown() const { return has_thrown_; }
 
 private:
-  bool areSome(const NeighborLists& lists, std::size_t count) const {
-    return areLists(lists, count, static_cast<std::size_t>(points_.cols())) &&
-           std::all_of(lists.indices.begin(), lists.indices.end(),
-                       [&](Index i) { return std::binary_search(some_.begin(), some_.end(), i); });
+  NeighborLists anyLists(std::size_t count, const std::vector<Index>& some) {
+    NeighborLists lists;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = bytes_.below(12); k > 0; --k)
+        lists.indices.push_back(some[bytes_.byte() % some.size()]);
+      lists.offsets.push_back(lists.indices.size());
+    }
+    if (!is_in_range_ && !lists.indices.empty()) {
+      Index& index = lists.indices[bytes_.byte() % lists.indices.size()];
+      index = bytes_.raw<Index>();
+      was_bad_ = !std::binary_search(some.begin(), some.end(), index);
+    }
+    return lists;
   }
 
   Bytes bytes_;
   const Positions& points_;
   Positions tamed_;
-  std::vector<Index> some_;
   bool is_right_ = true;
   bool is_in_range_ = true;
-  bool throws_ = false;
-  std::size_t wrong_at_ = 0;
-  std::size_t calls_ = 0;
   bool was_bad_ = false;
-  bool has_thrown_ = false;
 };
 
 void checkSurface(const Positions& points, const Options& options, const Surface& result) {
@@ -121,13 +112,7 @@ void checkSurface(const Positions& points, const Options& options, const Surface
                 result.points.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the points are as many finite ones as there are vertices");
     require(result.vertex_of_input.size() == result.inputs.size(), "each point has a vertex");
-    for (std::size_t v = 0; v < result.vertexCount(); ++v)
-      require(result.vertexOf(result.input_of_vertex[v]) == static_cast<Index>(v),
-              "a vertex is that of its first point");
   }
-  require(!options.details || result.sphere.cols() == 0 ||
-              result.vertex_residuals.size() == result.vertexCount(),
-          "there is a residual for each vertex on the sphere");
   for (const auto& pair : result.self_intersections)
     require(0 <= pair[0] && pair[0] < pair[1] && pair[1] < result.triangles.cols(),
             "a pair is of two triangles");
@@ -155,19 +140,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bytes.raw<std::uint16_t>();
   const Positions points = pointsFrom(bytes);
 
-  // Valid, but too long to wait for.
-  if (options.paper.max_iterations > 3000 || options.smoothing > 300)
-    watch.cancelAt(2000);
-  const std::array<std::string, 13> stages{
-      "neighbors", "graph",     "outliers",      "parts",        "consolidation",
-      "openings",  "embedding", "triangulation", "optimization", "smoothing",
-      "cleaning",  "fill",      "quality"};
   if (watch.listens())
     options.progress = [&](const Progress& progress) {
-      const bool goes_on = watch(progress);
-      require(std::count(stages.begin(), stages.end(), progress.stage) == 1, "a stage is known");
       require(progress.part < progress.parts, "a part is one of those there are");
-      return goes_on;
+      return watch(progress);
     };
 
   Search search(of_search, points);
@@ -179,10 +155,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Ending ending = endingOf(
       watch, [&] { result = reconstruct(points, options, search_of); }, message);
   if (ending == Ending::AsTheWatchAsked)
-    return 0;
-  require(search.hasThrown() == (ending == Ending::FaultOfSearch),
-          "a search's exception comes out");
-  if (ending == Ending::FaultOfSearch)
     return 0;
   if (ending == Ending::ComputeError)
     finding("on valid input: " + message);

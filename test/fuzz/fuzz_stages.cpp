@@ -30,11 +30,6 @@ void spoil(Bytes& bytes, Triangles& triangles, std::size_t n) {
 /// A morph of large shapes takes too long.
 constexpr Eigen::Index kMaxOfSecond = 20;
 
-/// Limits the time of the work; a value that is out of range is kept.
-int atMost(int most, int value, int range) {
-  return value > most && value <= range ? most : value;
-}
-
 /// A mesh of points with a map, either of which may be wrong.
 Mapped mappedFrom(Bytes& bytes, const Positions& points) {
   Mapped mesh{points, {}, points.allFinite() ? internal::projectFromCentroid(points) : points};
@@ -95,13 +90,6 @@ Inputs inputsFrom(Bytes& bytes, const Positions& points) {
   in.direction = {bytes.real(), bytes.real(), bytes.real()};
   in.location = {bytes.index(count), {bytes.real(), bytes.real(), bytes.real()}};
   in.time = bytes.real();
-  if (bytes.oneIn(4)) {
-    in.spoil_numbers = [&bytes](Eigen::Ref<Eigen::MatrixXd> numbers) {
-      if (bytes.oneIn(2) && numbers.size() > 0)
-        numbers(bytes.byte() % numbers.rows(), bytes.byte() % numbers.cols()) = bytes.real();
-    };
-    in.spoil_triangles = [&bytes](Triangles& triangles) { spoil(bytes, triangles, 64); };
-  }
   return in;
 }
 

@@ -1,16 +1,17 @@
 #pragma once
 
+#include "exact_predicates.h"
 #include "fuzz_input.h"
 #include "open_shapes.h"
 #include "spherical_param/reconstruct.h"
 
-#include <boost/multiprecision/cpp_int.hpp>
-#include <boost/multiprecision/eigen.hpp>
-
 #include <tuple>
 
-/// What reconstruct() guarantees, decided in exact arithmetic and without the library.
+/// What reconstruct() guarantees, decided without its stages.
 namespace fuzz {
+
+using internal::areCoplanar;
+using internal::volumeSign;
 
 using Place = std::tuple<double, double, double>;
 
@@ -20,27 +21,6 @@ inline std::map<Place, Index> firstAtPlaces(const Positions& points) {
   for (Index i = 0; i < points.cols(); ++i)
     first.emplace(Place{points(0, i) + 0.0, points(1, i) + 0.0, points(2, i) + 0.0}, i);
   return first;
-}
-
-/// Whether finite points lie in one plane: in fractions of any size.
-inline bool liesInPlane(const Positions& points) {
-  using Exact = boost::multiprecision::number<boost::multiprecision::cpp_rational_backend,
-                                              boost::multiprecision::et_off>;
-  using Vector = Eigen::Matrix<Exact, 3, 1>;
-  const Vector zero = Vector::Zero();
-  const Vector origin = points.col(0).cast<Exact>();
-  Vector direction = zero;
-  Vector normal = zero;
-  for (const auto& point : points.colwise()) {
-    const Vector offset = point.cast<Exact>() - origin;
-    if (direction == zero)
-      direction = offset;
-    else if (normal == zero)
-      normal = direction.cross(offset);
-    else if (normal.dot(offset) != 0)
-      return false;
-  }
-  return true;
 }
 
 inline Positions finiteOf(const Positions& points) {
@@ -56,7 +36,7 @@ inline bool mayBeOpen(const Options& options) {
 inline bool canBeMeshed(const Positions& points, const Options& options) {
   const Positions finite = finiteOf(points);
   return (finite.array().abs() <= 1e100).all() && firstAtPlaces(finite).size() >= 4 &&
-         (mayBeOpen(options) || !liesInPlane(finite));
+         (mayBeOpen(options) || !areCoplanar(finite));
 }
 
 /// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh, and
@@ -64,31 +44,6 @@ inline bool canBeMeshed(const Positions& points, const Options& options) {
 inline bool mustBeMeshed(const Positions& points, const Options& options) {
   return options.outliers == OutlierMode::None && options.parts == PartsMode::All &&
          !mayBeOpen(options) && canBeMeshed(points, options);
-}
-
-/// Whether lists are as types.h says: `count` lists of indices in [0, n).
-inline bool areLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
-  const auto& [offsets, indices] = lists;
-  return offsets.size() == count + 1 && offsets.front() == 0 && offsets.back() == indices.size() &&
-         std::is_sorted(offsets.begin(), offsets.end()) &&
-         std::all_of(indices.begin(), indices.end(),
-                     [&](Index j) { return j >= 0 && static_cast<std::size_t>(j) < n; });
-}
-
-/// Whether the volume, in long double, is negative by more than its rounding.
-inline bool facesInward(const Positions& points, const Triangles& triangles) {
-  using Vector = Eigen::Matrix<long double, 3, 1>;
-  const Vector origin = points.col(0).cast<long double>();
-  long double volume = 0.0L;
-  long double size = 0.0L;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const auto corner = [&](int k) -> Vector {
-      return points.col(triangles(k, t)).cast<long double>() - origin;
-    };
-    volume += corner(0).dot(corner(1).cross(corner(2)));
-    size += corner(0).norm() * corner(1).norm() * corner(2).norm();
-  }
-  return volume < -1e-12L * size;
 }
 
 /// Requires that a mesh has the boundary, the pieces and the genus that are reported.
@@ -139,7 +94,8 @@ inline void requireGuarantees(const Positions& cloud, const Options& options,
               options.intersections != IntersectionMode::Keep,
           "a mesh that was to be closed is closed");
   require(genus == 0 || options.handles != HandleMode::None, "handles that were to be cut are cut");
-  require(!result.isClosed() || !facesInward(vertices, result.triangles), "triangles face outward");
+  require(!result.isClosed() || volumeSign(vertices, result.triangles) >= 0,
+          "triangles face outward");
   const auto count = static_cast<Eigen::Index>(v);
   const bool has_details = options.details || options.topology == TopologyMode::Sphere;
   require(areUnitVectors(result.sphere) &&

@@ -27,14 +27,6 @@ class ReleaseFiles(unittest.TestCase):
             with self.subTest(path=str(path.relative_to(ROOT))), path.open() as file:
                 self.assertIsInstance(json.load(file) if path.suffix == ".json" else yaml.safe_load(file), dict)
 
-    def test_presets_set_options_that_exist(self):
-        scripts = [ROOT / "CMakeLists.txt", *(ROOT / "cmake").glob("*.cmake")]
-        declared = {name for path in scripts
-                    for name in re.findall(r"(?:option|set)\((SPHERICAL_PARAM_\w+)", path.read_text())}
-        for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]:
-            ours = {name for name in preset["cacheVariables"] if name.startswith("SPHERICAL_PARAM_")}
-            self.assertLessEqual(ours, declared, preset["name"])
-
     def test_versions_and_dates_are_those_of_the_build_and_the_changelog(self):
         version = found(r"^project\(.* VERSION ([0-9.]+) ", "CMakeLists.txt")
         citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
@@ -48,14 +40,11 @@ class ReleaseFiles(unittest.TestCase):
         run = set(re.findall(r"\w+", runs_all.replace("--quick", "")))
         scripts = {path.stem for path in (ROOT / "tools").glob("test*.sh")} - {"test_all"} | {"stress"}
         self.assertEqual(run, scripts)
-        def job(workflow, name):
-            return yaml.safe_load((ROOT / f".github/workflows/{workflow}.yml").read_text())["jobs"][name]
-
-        weekly = [step.get("run", "") for step in job("weekly", "debian")["steps"]]
-        self.assertIn("${{ inputs.script || 'tools/test_all.sh' }}", "".join(weekly))
-        self.assertEqual(job("ci", "debian"), {"uses": "./.github/workflows/weekly.yml", "with": {"script": ".ci/run"}})
-        self.assertIn("tests", job("release", "release")["needs"])
-        self.assertEqual(job("release", "tests")["uses"], "./.github/workflows/weekly.yml")
+        for workflow, script in (("weekly", "inputs.script || 'tools/test_all.sh'"), ("ci", "script: .ci/run"),
+                                 ("release", "uses: ./.github/workflows/weekly.yml")):  # fmt: skip
+            text = (ROOT / f".github/workflows/{workflow}.yml").read_text()
+            self.assertIn(script, text)
+        self.assertIn("tests", yaml.safe_load(text)["jobs"]["release"]["needs"])
 
 
 if __name__ == "__main__":

@@ -148,7 +148,7 @@ def section(context):
         draw.main([str(folder / f"{row.name}.png"), *map(str, files), f"--size={360 * len(files)}x360", "--back",
                    f"--view={row.view[0]},{row.view[1]}",
                    *(f"--caption={caption}" for caption in captions)])  # fmt: skip
-        report.picture(f"gallery/{row.name}.png", f"{row.name}: the cloud and the mesh of each method")
+        report.text(f"![{row.name}: the cloud and the mesh of each method](gallery/{row.name}.png)")
     report.table("gallery", COLUMNS, all_rows)
     scans(context)
     report.blocks["gallery_provenance"] = report.blocks["provenance"]

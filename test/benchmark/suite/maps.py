@@ -30,12 +30,6 @@ def _remesh(context, *words):
     return done.seconds, json.loads(done.output)
 
 
-def _map_row(cloud, report):
-    seconds = stage_seconds(report)
-    meshing = sum(s for stage, s in seconds.items() if stage not in MAP_STAGES)
-    return {"model": cloud.name, **flat(report), "seconds": seconds["map"], "ratio": seconds["map"] / meshing}
-
-
 def _remeshed_row(context, cloud, points):
     mesh = context.work / "remeshed.ply"
     context.programs.reconstruct(cloud, mesh, *SPHERE)
@@ -43,7 +37,7 @@ def _remeshed_row(context, cloud, points):
     seconds, _ = _remesh(context, cloud.points, mesh, "-points", points, *SPHERE)
     return {"model": cloud.name, "seconds": seconds, "mesh_rms": of_mesh["rms"],
             "mesh_hausdorff": of_mesh["hausdorff"],
-            **context.programs.measure(mesh, cloud, over_cloud=False)}  # fmt: skip
+            **context.programs.measure(mesh, cloud)}  # fmt: skip
 
 
 def section(context):
@@ -58,7 +52,10 @@ def section(context):
     rows = []
     for cloud in context.models or generated:
         context.say(f"map: {cloud.name}")
-        rows.append(_map_row(cloud, _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]))
+        told = _remesh(context, cloud.points, context.work / "map.ply", *SPHERE)[1]
+        seconds = stage_seconds(told)
+        meshing = sum(s for stage, s in seconds.items() if stage not in MAP_STAGES)
+        rows.append({"model": cloud.name, **flat(told), "seconds": seconds["map"], "ratio": seconds["map"] / meshing})
     report.table("maps", MAPS, rows)
     by_size = sorted((one for one in context.models if one.truth), key=lambda one: one.points.stat().st_size)
     # The smallest, one in the middle, the largest: each takes ten seconds or more.

@@ -149,13 +149,13 @@ class Programs:
         """Of the true surface; None if that is not known, or no oriented manifold."""
         return self.referee.topology(Mesh.read(cloud.truth))["genus"] if cloud.truth else None
 
-    def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):
+    def measure(self, mesh, cloud=None, sphere=None):
         """The referee's measures of a mesh, by the keys of the tables."""
         mesh = Mesh.read(mesh)
         found = {"vertices": len(mesh.points), "triangles": len(mesh.triangles), **self.referee.topology(mesh),
                  "intersections": self.referee.intersections(mesh)}  # fmt: skip
         truth = Mesh.read(cloud.truth) if cloud and cloud.truth else None
-        if cloud and over_cloud:
+        if cloud:
             found.update(compare(mesh, Mesh.read(cloud.points).points, truth))
         if truth:
             found.update(self.referee.distances(mesh, truth, self.samples))

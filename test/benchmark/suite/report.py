@@ -2,7 +2,6 @@
 
 import csv
 import math
-import os
 import pathlib
 import re
 import textwrap
@@ -32,12 +31,6 @@ def _cell(value, digits=None):
     return f"{value:,.{digits}f}" if isinstance(value, float) and digits is not None else str(value)
 
 
-def _write(path, text):
-    part = path.with_name(path.name + ".part")
-    part.write_text(text)
-    os.replace(part, path)
-
-
 class Report:
     def __init__(self, folder):
         self.folder = folder
@@ -46,9 +39,6 @@ class Report:
 
     def text(self, text):
         self.paragraphs.append(textwrap.dedent(text).strip())
-
-    def picture(self, name, caption):
-        self.text(f"![{caption}]({name})")
 
     def table(self, name, columns, rows):
         """A table, unless there are no rows; without columns that have no value. The CSV file has all values, not
@@ -64,10 +54,10 @@ class Report:
             writer.writerows(rows)
 
     def write(self):
-        _write(self.folder / "report.md", "\n\n".join(filter(None, self.paragraphs)) + "\n")
+        (self.folder / "report.md").write_text("\n\n".join(filter(None, self.paragraphs)) + "\n")
 
     def update_documents(self):
         for path in DOCUMENTS:
-            _write(path, MARK.sub(
+            path.write_text(MARK.sub(
                 lambda found: f"<!-- {found[1]} -->\n{self.blocks[found[1]]}" if found[1] in self.blocks
                 else found[0], path.read_text()))  # fmt: skip
