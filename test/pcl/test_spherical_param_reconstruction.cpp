@@ -107,25 +107,6 @@ TEST_F(SphericalParamReconstruction, SeesACloudFromItsSensorOrAGivenPlace) {
   expect_view(false);
 }
 
-TEST_F(SphericalParamReconstruction, OrganizedCloudsAreMeshedWhateverIsDenseSays) {
-  for (const bool is_dense : {true, false}) {
-    const HardCase hard;
-    hard.cloud->width = hard.cloud->height = 20;
-    hard.cloud->is_dense = is_dense;
-    Reconstruction reconstruction = reconstructionOf(hard.cloud);
-    pcl::PolygonMesh mesh;
-    reconstruction.reconstruct(mesh);
-    EXPECT_EQ(reconstruction.getVertexIndices().size(), 396U);
-    EXPECT_EQ(mesh.polygons.size(), 2 * 396U - 4);
-    EXPECT_EQ(mesh.cloud.height, 20U);
-    EXPECT_EQ(mesh.cloud.is_dense != 0, is_dense);
-    EXPECT_FALSE(reconstruction.getSearchMethod());  // the default one is not kept
-  }
-  const Cloud::Ptr cloud = makeEllipsoid(100);
-  cloud->width = cloud->height = 0;
-  EXPECT_TRUE(isSphere(meshed(cloud), 100));
-}
-
 TEST_F(SphericalParamReconstruction, EachMistakeIsNamed) {
   const auto expect_failure = [](const std::string& words,
                                  const std::function<void(Reconstruction&)>& make_mistake) {
@@ -195,102 +176,35 @@ TYPED_TEST(StandardPointType, WorksThroughMeshConstructionAndKeepsHeaderAndField
     EXPECT_EQ(mesh.cloud.fields[i].name, expected.fields[i].name);
 }
 
-TEST_F(SphericalParamReconstruction, AllOverloadsAgreeAndASuccessFollowsAFailure) {
-  Reconstruction reconstruction = reconstructionOf(makeEllipsoid(200));
-  reconstruction.setKSearch(1);
-  pcl::PolygonMesh mesh = staleMesh();
-  reconstruction.reconstruct(mesh);
-  expectNothingLeft(reconstruction, mesh);
-  EXPECT_EQ(mesh.header.frame_id, "scanner");
-  reconstruction.setKSearch(12);
-  pcl::PCLSurfaceBase<PointXYZ>& base = reconstruction;
-  base.reconstruct(mesh);
-  const Triangles triangles = trianglesOf(mesh.polygons);
-  EXPECT_TRUE(isSphere(mesh.polygons, 200));
-  EXPECT_EQ(trianglesOf(meshed(reconstruction)), triangles);
-  reconstruction.reconstruct();
-  EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  EXPECT_EQ(reconstruction.getResult().surface().triangles, triangles);
-}
-
-TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing) {
-  pcl::console::setVerbosityLevel(pcl::console::L_INFO);
-  for (const int count : {0, 2, 100}) {
-    Reconstruction reconstruction;
-    if (count > 0)
-      reconstruction.setInputCloud(makeEllipsoid(count));
-    pcl::PolygonMesh mesh;
-    ::testing::internal::CaptureStderr();
-    ::testing::internal::CaptureStdout();
-    reconstruction.reconstruct(mesh);
-    const std::string errors = ::testing::internal::GetCapturedStderr();
-    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
-    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), count < 4 ? 1 : 0) << errors;
-    if (count < 4) {
-      EXPECT_NE(errors.find("[pcl::SphericalParamReconstruction::reconstruct] " +
-                            reconstruction.getErrorMessage()),
-                std::string::npos)
-          << errors;
-    }
-  }
-}
-
-TEST_F(SphericalParamReconstruction, SmoothFillsAppendPointsToThePolygonMesh) {
+TEST_F(SphericalParamReconstruction, PolygonMeshHasSmoothedPointsAndBehindThemThoseOfFills) {
   const Cloud::Ptr cloud = makeCloud(
       kAxes.asDiagonal() * spherical_param::test::spiralSphere(2000).middleCols(250, 1500));
   Reconstruction reconstruction = reconstructionOf(cloud);
+  reconstruction.setIndices(share(shuffledRange(1499, 7)));  // all but the last
   reconstruction.setSurface(spherical_param::SurfaceMode::Closed);
   reconstruction.setFill(spherical_param::FillMode::Smooth);
+  reconstruction.setSmoothing(2);
   pcl::PolygonMesh mesh;
   reconstruction.reconstruct(mesh);
   const Surface& surface = reconstruction.getResult().surface();
   const Cloud points = cloudOf<PointXYZ>(mesh.cloud);
   EXPECT_GT(surface.added_vertices, 0U);
   ASSERT_EQ(points.size(), cloud->size() + surface.added_vertices);
-  EXPECT_TRUE(isSphere(mesh.polygons, points.size()));
+  EXPECT_EQ(mesh.polygons.size(), 2 * (points.size() - 1) - 4);
+  Indices vertices = reconstruction.getVertexIndices();
+  vertices.resize(1499);  // those of the cloud
+  EXPECT_NE(positionsOf(points, vertices), positionsOf(*cloud, vertices));
   for (std::size_t i = cloud->size(); i < points.size(); ++i)
-    EXPECT_EQ(points[i].getVector3fMap(),
-              surface.points.col(static_cast<Eigen::Index>(i)).cast<float>());
+    vertices.push_back(static_cast<pcl::index_t>(i));
+  EXPECT_EQ(positionsOf(points, vertices), surface.points.cast<float>().cast<double>());
+  EXPECT_EQ(points[1499].getVector3fMap(), cloud->back().getVector3fMap());
   // Polygons alone are those of the input.
-  EXPECT_TRUE(isSphere(meshed(reconstruction), cloud->size()));
-}
-
-Positions allOf(const Cloud& cloud) {
-  return cloud.getMatrixXfMap(3, 4, 0).cast<double>();
-}
-
-Positions finiteOf(const Positions& points) {
-  return spherical_param::test::pointsWhere(points, [](const auto& p) { return p.allFinite(); });
-}
-
-TEST_F(SphericalParamReconstruction, PolygonMeshHasConsolidatedAndSmoothedPoints) {
-  const HardCase hard;
-  for (const bool consolidates : {true, false}) {
-    Reconstruction reconstruction = reconstructionOf(hard.cloud);
-    reconstruction.setIndices(share(hard.indices));
-    if (consolidates)
-      reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
-    else
-      reconstruction.setSmoothing(2);
-    pcl::PolygonMesh mesh;
-    reconstruction.reconstruct(mesh);
-    const Surface& surface = reconstruction.getResult().surface();
-    const Cloud points = cloudOf<PointXYZ>(mesh.cloud);
-    ASSERT_EQ(points.size(), hard.cloud->size());
-    Positions expected = allOf(*hard.cloud);
-    expected(Eigen::all, reconstruction.getVertexIndices()) =
-        surface.points.cast<float>().cast<double>();
-    EXPECT_EQ(finiteOf(allOf(points)), finiteOf(expected));
-    EXPECT_NE(finiteOf(allOf(points)), finiteOf(allOf(*hard.cloud)));
-    EXPECT_TRUE(trianglesOf(mesh.polygons) == trianglesOf(meshed(reconstruction)));
-  }
+  EXPECT_EQ(meshed(reconstruction).size(), 2 * 1499U - 4);
 }
 
 TEST_F(SphericalParamReconstruction, SphereFitsTheCloudAndOutlivesIt) {
   const HardCase hard;
-  Reconstruction reconstruction;
-  EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
-  reconstruction.setInputCloud(hard.cloud);
+  Reconstruction reconstruction = reconstructionOf(hard.cloud);
   reconstruction.setIndices(share(hard.indices));
   reconstruction.setDetails(true);
   meshed(reconstruction);
@@ -422,14 +336,14 @@ Cloud::Ptr beside(const Cloud::Ptr& cloud) {
   return cloud;
 }
 
-TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
-  const Cloud::Ptr small = makeEllipsoid(200);
-  const Cloud::Ptr large = beside(makeEllipsoid(300));
+TEST(PartsOfCloud, AreMeshedAsIfTheyWereAloneAndThoseWithHandlesHaveNoPlaceOnTheSphere) {
+  const Cloud::Ptr small = beside(makeEllipsoid(200));
+  const Cloud::Ptr torus = makeTorus(24);
   const Cloud::Ptr cloud(new Cloud);
-  for (std::size_t i = 0; i < 300; ++i) {  // in turn as long as both last
+  for (std::size_t i = 0; i < torus->size(); ++i) {  // in turn as long as both last
     if (i < 200)
       cloud->push_back((*small)[i]);
-    cloud->push_back((*large)[i]);
+    cloud->push_back((*torus)[i]);
   }
   for (const bool has_search : {false, true}) {
     Reconstruction reconstruction = reconstructionOf(cloud, has_search);
@@ -437,40 +351,29 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     reconstruction.setDetails(true);
     const Polygons polygons = meshed(reconstruction);
     ASSERT_EQ(reconstruction.getPartCount(), 2U);
-    EXPECT_EQ(polygons.size(), 596U + 396U);
-    EXPECT_EQ(reconstruction.getUsedIndices(0).size(), 300U);
+    const Triangles of_torus = trianglesOf(meshed(torus));
+    EXPECT_EQ(polygons.size(), static_cast<std::size_t>(of_torus.cols()) + 396U);
+    EXPECT_EQ(reconstruction.getUsedIndices(0).size(), torus->size());
     EXPECT_EQ(reconstruction.getUsedIndices(1).size(), 200U);
     EXPECT_EQ(reconstruction.getUsedIndices(1)[1], 2);
-    const Triangles of_large = trianglesOf(meshed(large));
-    EXPECT_EQ(reconstruction.getResult().surfaces[0].triangles, of_large);
-    EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
+    EXPECT_EQ(reconstruction.getResult().surfaces[0].triangles, of_torus);
+    EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_torus(0, 0))),
               polygons.front().vertices.front());
     EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles, trianglesOf(meshed(small)));
     EXPECT_EQ(reconstruction.getDiagnosis(1).triangle_marks, std::vector<std::uint8_t>(396, 0));
     const auto sphere = reconstruction.getSphereCoordinates();
-    EXPECT_TRUE(sphere->is_dense);
-    for (const PointXYZ& point : *sphere)
-      EXPECT_NEAR(point.getVector3fMap().norm(), 1.0F, 1e-6F);
+    EXPECT_FALSE(sphere->is_dense);
+    ASSERT_EQ(sphere->size(), cloud->size());
+    for (std::size_t i = 0; i < sphere->size(); ++i) {
+      const auto place = (*sphere)[i].getVector3fMap();
+      const bool is_of_small = i < 400 && i % 2 == 0;
+      EXPECT_TRUE(is_of_small ? std::abs(place.norm() - 1.0F) < 1e-6F
+                              : place.array().isNaN().all());
+    }
   }
 }
 
-TEST(PartsOfCloud, WithHandlesHaveNoPlaceOnTheSphere) {
-  const Cloud::Ptr cloud = makeTorus(24);
-  const std::size_t of_torus = cloud->size();
-  *cloud += *beside(makeEllipsoid(300));
-  Reconstruction reconstruction = reconstructionOf(cloud);
-  reconstruction.setParts(PartsMode::Each);
-  reconstruction.setDetails(true);
-  meshed(reconstruction);
-  ASSERT_EQ(reconstruction.getPartCount(), 2U);
-  const auto sphere = reconstruction.getSphereCoordinates();
-  ASSERT_EQ(sphere->size(), cloud->size());
-  EXPECT_FALSE(sphere->is_dense);
-  for (std::size_t i = 0; i < sphere->size(); ++i)
-    EXPECT_EQ((*sphere)[i].getVector3fMap().array().isNaN().all(), i < of_torus) << i;
-}
-
-TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
+TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarningAndFailuresArePrintedOnce) {
   const Cloud::Ptr cloud = makeEllipsoid(300);
   for (int i = 0; i < 100; ++i)
     cloud->push_back(PointXYZ(5.0F + 0.2F * static_cast<float>(i % 10),
@@ -483,6 +386,12 @@ TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
   EXPECT_NE(warning.find("1 part (100 points) cannot be meshed"), std::string::npos);
   EXPECT_EQ(reconstruction.getPartCount(), 1U);
   EXPECT_EQ(reconstruction.getResult().left_out.other_parts.size(), 100U);
+  reconstruction.setInputCloud(makeEllipsoid(2));
+  testing::internal::CaptureStderr();
+  reconstruction.reconstruct();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "[pcl::SphericalParamReconstruction::reconstruct] " + reconstruction.getErrorMessage() +
+                "\n");
 }
 
 }  // namespace

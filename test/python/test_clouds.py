@@ -108,10 +108,6 @@ class Clouds(shapes.InFolder):
         twice = sp.reconstruct(source[np.repeat(np.arange(300), 2)])
         np.testing.assert_array_equal(twice.colors, self.colors)
 
-    def test_normals_of_the_mesh_point_outward(self):
-        self.assertGreater((self.expected.normals * self.normals).sum(axis=1).min(), 0.9)
-        np.testing.assert_allclose(np.linalg.norm(self.expected.normals, axis=1), 1, atol=1e-12)
-
     @unittest.skipUnless(util.find_spec("open3d"), "Open3D is not installed")
     def test_clouds_and_meshes_of_open3d_are_taken(self):
         import open3d

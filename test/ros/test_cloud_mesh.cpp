@@ -128,39 +128,27 @@ TEST(RosCloudMesh, DoublePrecisionKeepsItsDigits) {
     for (std::uint32_t i = 0; i < cloud.width; ++i)
       test::put(cloud, i, 8 * axis, points(axis, i));
   }
-  for (const int smoothing : {0, 5}) {
-    Settings settings;
-    settings.options.smoothing = smoothing;
-    settings.max_points = 0;  // no limit
-    const Outcome outcome = meshed(cloud, settings);
-    EXPECT_TRUE(outcome.mesh->colors.empty());
-    expectCoresMesh<double>(outcome, cloud, settings);
-  }
+  Settings settings;
+  settings.options.smoothing = 5;
+  settings.max_points = 0;  // no limit
+  const Outcome outcome = meshed(cloud, settings);
+  EXPECT_TRUE(outcome.mesh->colors.empty());
+  expectCoresMesh<double>(outcome, cloud, settings);
 }
 
-/// The points of a bowl, of a small ellipsoid beside it, and of a stray point.
-pcl::PCLPointCloud2 severalParts() {
+TEST(RosCloudMesh, OptionsHoldAndAllSurfacesAreOneMesh) {
+  // A bowl, a small ellipsoid beside it, and a stray point.
   pcl::PCLPointCloud2 cloud = ellipsoid(1501);
   const Positions small = positionsOf<float>(ellipsoid(501));
   for (std::uint32_t i = 0; i < 500; ++i)
     setPoint(cloud, i, small(0, i) + 6.0, small(1, i), small(2, i));
   setPoint(cloud, 500, 0.0, 50.0, 0.0);
-  return cloud;
-}
-
-TEST(RosCloudMesh, OptionsHoldAndAllSurfacesAreOneMesh) {
-  const pcl::PCLPointCloud2 cloud = severalParts();
   Settings each;
   each.options.surface = spherical_param::SurfaceMode::Open;
   each.options.smoothing = 3;
-  Settings filled;
-  filled.options.parts = spherical_param::PartsMode::Largest;
-  filled.options.surface = spherical_param::SurfaceMode::Closed;
-  filled.options.fill = spherical_param::FillMode::Smooth;
   Settings sphere;
   sphere.options.topology = spherical_param::TopologyMode::Sphere;
-  for (const auto& [settings, has_faults] :
-       {std::pair(each, false), std::pair(filled, false), std::pair(sphere, true)}) {
+  for (const auto& [settings, has_faults] : {std::pair(each, false), std::pair(sphere, true)}) {
     const Outcome outcome = meshed(cloud, settings);
     EXPECT_EQ(outcome.has_faults, has_faults) << outcome.message;
     EXPECT_EQ(outcome.mesh->colors.size(), outcome.mesh->cloud.width);
@@ -200,16 +188,11 @@ TEST(RosCloudMesh, SurfacesFaceTheSensorOrAsTheNormalsOfThePointsDo) {
   }
 }
 
-TEST(RosCloudMesh, BadCloudsAndOptionsAreAnsweredWithCauseAndRemedy) {
+TEST(RosCloudMesh, BadCloudsAreAnsweredWithCauseAndRemedy) {
   using Change = std::function<void(pcl::PCLPointCloud2&)>;
   const std::vector<std::pair<std::string, Change>> cases = {
       {"empty", [](auto& c) { c = pcl::PCLPointCloud2(); }},
       {"4 distinct", [](auto& c) { c = ellipsoid(3); }},
-      {"not finite",
-       [](auto& c) {
-         for (std::uint32_t i = 0; i < c.width; ++i)
-           setPoint(c, i, kNan, 0.0, 0.0);
-       }},
       {"no field 'z'", [](auto& c) { c.fields.erase(c.fields.begin() + 2); }},
       {"is an integer", [](auto& c) { c.fields[1].datatype = pcl::PCLPointField::UINT32; }},
       {"ends after byte 21 ", [](auto& c) { c.fields[0].offset = 17; }},
@@ -232,11 +215,6 @@ TEST(RosCloudMesh, BadCloudsAndOptionsAreAnsweredWithCauseAndRemedy) {
     EXPECT_NE(outcome.message.find(cause), std::string::npos) << cause << ": " << outcome.message;
     EXPECT_NE(outcome.message.find("; "), std::string::npos) << outcome.message;
   }
-  Settings settings;
-  settings.options.paper.damping = 2.0;
-  const Outcome refused = meshCloud(ellipsoid(100), settings, {});
-  EXPECT_EQ(refused.status, Status::Failed);
-  EXPECT_NE(refused.message.find("damping"), std::string::npos) << refused.message;
 }
 
 }  // namespace

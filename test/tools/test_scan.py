@@ -5,7 +5,7 @@ import re
 import unittest
 
 import numpy as np
-from tool_test import ToolTest, nearest, read_ply, run
+from tool_test import ToolTest, check_surface, nearest, read_ply, run
 
 # V - E + F of those that are no sphere: 2 for each piece, 2 less for each handle, 1 less for each opening.
 EULER = {"pair": 4, "torus": 0, "bowl": 1, "chair": -6, "holed": -2}
@@ -29,13 +29,6 @@ class Scan(ToolTest):
                 first, again, other = (scan(shape, count, "-noise", 0.1, "-seed", seed)[0] for seed in (7, 7, 8))
                 self.assertTrue(np.array_equal(first, again))
                 self.assertEqual(len(np.unique(np.concatenate([first, other]), axis=0)), 2 * count)
-
-    def test_points_and_normals_of_a_torus_are_exact(self):
-        points, normals = scan("torus", 500)
-        outward = points / np.linalg.norm(points[:, :2], axis=1)[:, None]
-        from_circle = points - 0.36 * outward * [1, 1, 0]
-        self.assertLess(np.abs(from_circle - 0.14 * normals).max(), 1e-6)  # single precision
-        self.assertLess(np.abs(np.linalg.norm(normals, axis=1) - 1).max(), 1e-6)
 
     def test_noise_is_uniform_along_the_normal_relative_to_the_25_nearest_neighbours(self):
         (clean, normals), (noisy, _) = scan("bird", 1000), scan("bird", 1000, "-noise", 0.3)
@@ -95,26 +88,14 @@ class Scan(ToolTest):
         self.assertTrue(((0.2 < points[:, 2]) & (points[:, 2] < 2)).all())
         self.assertGreater(((points * normals).sum(axis=1) < 0).mean(), 0.999)  # they face the camera
 
-    def test_the_noise_of_a_depth_image_is_along_its_rays(self):
-        (clean, _), (noisy, _) = scan("desk", 4800), scan("desk", 4800, "-noise", 0.5)
-        factors = (noisy / clean).mean(axis=1)
-        self.assertLess(np.abs(noisy - factors[:, None] * clean).max(), 1e-6)
-        step = np.diff(clean[:2, 0] / clean[:2, 2])[0]
-        self.assertLess(np.abs(factors - 1).max(), 0.5 * step * 1.01)
-        self.assertGreater(np.abs(factors - 1).max(), 0.5 * step * 0.98)
-
-    def test_a_depth_image_is_seen_from_one_place(self):
-        run("scan", "desk", "out.ply")
-        verdict = run("reconstruction", "out.ply", "mesh.ply")
-        self.assertRegex(verdict, r"76,800 points\nverdict   Seen from one place: \d surfaces with openings, all sound")
-        self.assertGreater(len(read_ply("mesh.ply")[0]), 0.99 * 76800)
-
     def test_every_format_holds_points_and_normals(self):
         for extension in ("pcd", "ply", "obj", "xyz", "txt"):
             run("scan", f"out.{extension}", "SPHERE", "-points=100", "-noise", "0.25", "--seed", "7", "-normals")
             run("reconstruction", f"out.{extension}", f"{extension}.off")
             mesh = pathlib.Path(f"{extension}.off").read_text()
             self.assertTrue(mesh.startswith("NOFF\n100 196 0\n"))
+            triangles = np.loadtxt(f"{extension}.off", int, skiprows=102)
+            self.assertEqual(check_surface(triangles[:, 1:], 100), (2, 0))
             # Nothing is lost on the way, hence all meshes are the same.
             self.assertEqual(mesh, pathlib.Path("pcd.off").read_text(), extension)
         for option in ("-h", "-version"):

@@ -75,17 +75,6 @@ def hemisphere(count):
     return spiral(2 * count)[count:]
 
 
-def torus(rings, around, radius, tube):
-    i, j = np.divmod(np.arange(rings * around), around)
-    u, v = 2 * np.pi * i / rings, 2 * np.pi * (j + 0.5 * (i % 2)) / around
-    out = radius + tube * np.cos(v)
-    return single(np.stack([out * np.cos(u), out * np.sin(u), tube * np.sin(v)], axis=1))
-
-
-def with_noise(points, sigma):
-    return single(points + np.random.default_rng(5).normal(0, sigma, points.shape))
-
-
 def write(name, text):
     pathlib.Path(name).write_text(text)
 
