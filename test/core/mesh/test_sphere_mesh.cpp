@@ -1,7 +1,6 @@
 #include "sphere_mesh.h"
 
 #include "helpers.h"
-#include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -136,16 +135,6 @@ struct Moves {
     return t;
   }
 };
-
-TEST(SphereMesh, HoldsItsTrianglesInAnyOrder) {
-  for (const Index n : {4, 5, 30, 3000}) {
-    const Triangles triangles =
-        triangulateSphere(spiralSphere(n))(Eigen::all, shuffledRange(2 * n - 4, 1));
-    const SphereMesh mesh(triangles, static_cast<std::size_t>(n));
-    EXPECT_EQ(mesh.triangles(), triangles);
-    expectSound(mesh, n);
-  }
-}
 
 TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphereAndAreRolledBackToTheLastIndex) {
   std::mt19937_64 random(5);

@@ -14,12 +14,5 @@ TEST(Embedding, ProjectsFromTheCentroidWhateverTheExtent) {
   EXPECT_NEAR(projectFromCentroid(with_center).col(200).norm(), 1.0, 1e-15);
 }
 
-TEST(Embedding, OfNoNodesIsEmptyAndAtOnePlaceOrNowhereCollapsed) {
-  EXPECT_EQ(embed(Graph(), Positions(3, 0)).directions.cols(), 0);
-  EXPECT_FALSE(isCollapsed({0.0, 0.9, 0.0}));
-  EXPECT_TRUE(isCollapsed({0.0, 0.99, 0.0}));
-  EXPECT_TRUE(isCollapsed(Eigen::Vector3d::Constant(std::nan(""))));
-}
-
 }  // namespace
 }  // namespace spherical_param::test
