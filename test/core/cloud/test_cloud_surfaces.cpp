@@ -60,21 +60,6 @@ TEST(Parts, AreJoinedAlongABoundaryWhereTheSpacingJumps) {
   EXPECT_EQ(surface.intersecting_triangles, 0U);
 }
 
-TEST(Parts, AreNotJoinedToNetsOfPointsInside) {
-  // A net of 100 points in a sphere of 2,000, which their stars reach, but farther from each other.
-  const Positions sphere = spiralSphere(2000);
-  const Positions points = horizontally(sphere, 0.7 * randomSphere(100, 3));
-  const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const Stars stars = test::starsOf(points, lists);
-  const Graph agreed = agreedGraph(points, stars, {});
-  std::size_t reaching = 0;
-  for (Index i = 2000; i < 2100; ++i)
-    for (const Index j : stars.of(i))
-      reaching += j < 2000 ? 1 : 0;
-  EXPECT_GT(reaching, 500U);
-  EXPECT_EQ(joinedAlongBoundaries(points, agreed, stars).neighbors, agreed.neighbors);
-}
-
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
   const Positions sphere = spiralSphere(1000);
   const Positions points =
@@ -130,16 +115,6 @@ TEST(StrayPoints, HaveTheirDistanceInSpacings) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].point, 600);
   EXPECT_NEAR(found[0].distance, 1.0 / sphereSpacing(600), 0.2 * found[0].distance);
-}
-
-TEST(StrayPoints, ThatAreNotLeftOutAreVerticesAndReported) {
-  const Positions stray = 1.6 * spiralSphere(5);
-  const Surface result =
-      surfaceOf(horizontally(stray, spiralSphere(800), stray.leftCols(2)), sphere());
-  EXPECT_EQ(result.outliers, (std::vector<Index>{0, 1, 2, 3, 4}));
-  EXPECT_EQ(result.vertexCount(), 805U);
-  ASSERT_FALSE(result.findings.empty());
-  EXPECT_EQ(result.findings[0].text, "5 stray points in the mesh");
 }
 
 }  // namespace

@@ -75,21 +75,6 @@ inline void expectConnectedGraphOf(const Positions& points, const NeighborGraph&
     }
 }
 
-/// Bridges are, one after the other, the closest pairs of two parts whose ends are not taken yet.
-inline void expectClosestPairs(const Positions& points, const std::vector<Bridge>& bridges,
-                               const std::function<bool(Index)>& is_inner,
-                               std::set<Index> taken = {}) {
-  for (const Bridge& bridge : bridges) {
-    double shortest = std::numeric_limits<double>::infinity();
-    for (Index i = 0; i < points.cols(); ++i)
-      for (Index j = 0; j < points.cols(); ++j)
-        if (is_inner(i) && !is_inner(j) && taken.count(i) == 0 && taken.count(j) == 0)
-          shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
-    EXPECT_DOUBLE_EQ(bridge.length, shortest);
-    taken.insert({bridge.from, bridge.to});
-  }
-}
-
 /// Points of a grid of spacing 1, moved within their plane by up to `jitter`.
 inline Positions sheet(int rows, double height, double jitter, std::uint64_t seed) {
   std::mt19937_64 random(seed);

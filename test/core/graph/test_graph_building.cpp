@@ -48,29 +48,5 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
   EXPECT_LT(dangling, 280);
 }
 
-TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
-  // Node 1 is in both parts; one of them has the nodes from 2 up to `end`.
-  for (const Index end : {12, 30}) {
-    const auto is_inner = [&](Index i) { return i >= 2 && i < end; };
-    const Positions points = randomSphere(40, 2);
-    std::vector<std::pair<Index, Index>> edges;
-    for (Index i = 0; i < 40; ++i)
-      for (Index j = i + 1; j < 40; ++j)
-        if (i == 1 || j == 1 || is_inner(i) == is_inner(j))
-          edges.emplace_back(i, j);
-    const std::vector<Bridge> bridges = articulationBridges(points, unitGraph(40, edges), 3);
-    ASSERT_EQ(bridges.size(), 3U);
-    expectClosestPairs(points, bridges, is_inner, {1});
-  }
-}
-
-TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {
-  for (const double scale : {1.0, 1e-100, 1e-150, 1e-160, 1e-200, 1e-300, 1e-320, 0.0}) {
-    const Positions points{{0.0, 3.0 * scale}, {0.0, 4.0 * scale}, {0.0, 0.0}};
-    EXPECT_DOUBLE_EQ(edgeLength(points, 0, 1),
-                     std::max(5.0 * scale, std::numeric_limits<double>::min()));
-  }
-}
-
 }  // namespace
 }  // namespace spherical_param::test

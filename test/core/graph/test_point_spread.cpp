@@ -89,12 +89,5 @@ TEST(PointSpread, OfAFewRandomPointsIsScatteredAndOfASmallShapeIsNot) {
     EXPECT_FALSE(are_scattered(cubeGrid(side)));
 }
 
-TEST(PointSpread, ElevationsAreOnAGridAndRandomPointsAreNot) {
-  const Positions model =
-      gridOf(20, 20, [](int y, int x) { return Eigen::Vector3d(x, y, std::sin(7.0 * x * x + y)); });
-  EXPECT_TRUE(areOnGrid(model));
-  EXPECT_FALSE(areOnGrid(withNoise(model, 1e-6, 1)));
-}
-
 }  // namespace
 }  // namespace spherical_param::test

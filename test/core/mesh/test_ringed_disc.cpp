@@ -43,17 +43,5 @@ TEST(RingedDisc, IsADiscWithinItsBoundary) {
   }
 }
 
-TEST(RingedDisc, HasEdgesThatGrowTowardsThePole) {
-  const RingedDisc disc = ringedDisc(evenAngles(4));
-  ASSERT_EQ(disc.radii.size(), 5U);
-  EXPECT_NEAR(disc.distance(0, 1), std::sqrt(2.0), 1e-15);
-  EXPECT_NEAR(disc.distance(0, 2), 2.0, 1e-15);
-  EXPECT_NEAR(disc.distance(3, 4), 1.0, 1e-15);
-  // A ring of 70 in one of 100: 1 - pi / 100 over 1 + pi / 70.
-  const RingedDisc large = ringedDisc(evenAngles(100));
-  EXPECT_NEAR(large.radii[100], (1.0 - kPi / 100) / (1.0 + kPi / 70), 1e-15);
-  EXPECT_GT(large.distance(100, 101), 1.3 * large.distance(0, 1));
-}
-
 }  // namespace
 }  // namespace spherical_param::test

@@ -5,21 +5,6 @@
 namespace spherical_param::test {
 namespace {
 
-TEST(LevelSolver, TheCentroidIsThatOfTheSurfaceOnEachLevel) {
-  const Cloud cloud = dentedCloud(2000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1, 100);
-  const EmbeddingLevels levels(cloud.graph, hierarchy, 1);
-  ASSERT_GE(levels.coarsest(), 2U);
-  const Eigen::Vector3d place = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
-  EXPECT_LT((levels.centroid(0, place.replicate(1, 2000)) - place).norm(), 1e-12);
-  for (std::size_t l = 1; l <= levels.coarsest(); ++l) {
-    const Positions coarse = randomSphere(static_cast<Index>(levels.graph(l).size()), 1);
-    const Positions fine = coarse * hierarchy.levels[l - 1].prolongation.transpose();
-    EXPECT_LT((levels.centroid(l, coarse) - levels.centroid(l - 1, fine)).norm(), 1e-12);
-    EXPECT_LT((levels.interpolated(l - 1, coarse) - fine.colwise().normalized()).norm(), 1e-12);
-  }
-}
-
 TEST(LevelSolver, SweepsLowerTheEnergyAndASolutionNeedsNoBarrier) {
   const Cloud cloud = dentedCloud(500);
   const GraphHierarchy none;
