@@ -130,15 +130,6 @@ TEST(ViewReconstruction, FilledGapsAreListedAndMayBeSmooth) {
   EXPECT_GT(reconstruct(points, options).surface().added_vertices, 30U);
 }
 
-TEST(ViewReconstruction, WithNormalsFacesAsTheyDo) {
-  const Positions points = depthImage(60, 40, boxBeforeWall);
-  CloudInfo info;
-  info.normals = points;  // away from the sensor
-  const Result result = reconstruct(points, seenFrom(Eigen::Vector3d::Zero()), {}, info);
-  for (const Surface& surface : result.surfaces)
-    EXPECT_EQ(surface.faced_by, FacedBy::Normals);
-}
-
 TEST(ViewReconstruction, OfASphereIsItsMapFromAGivenPlace) {
   const Positions points = ellipsoid(500);
   Options options = sphere(seenFrom(Eigen::Vector3d(0.1, 0.0, 0.1)));
