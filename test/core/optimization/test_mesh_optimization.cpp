@@ -53,20 +53,6 @@ TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
   }
 }
 
-TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
-  // Seen from its centroid, the tube hides much of itself; nothing intersects, but much is spiky.
-  const Mesh tube = bentTube(10.0, 2.0, 12);
-  const Case of = radialStart(withNoise(tube.points, 0.01, 4));
-  const MeshOptimization result = optimize(of);
-  expectGuarantees(of, result);
-  ASSERT_FALSE(result.report.is_noisy);
-  const double least = energyOf(of.points, tube.triangles);
-  EXPECT_GT(energyOf(of.points, of.triangles), 4.0 * least);
-  EXPECT_LT(energyOf(of.points, result.mesh.triangles()), 1.1 * least);
-  EXPECT_LT(fractionBeyondTwoSteps(of.graph, result.mesh.triangles()),
-            0.2 * fractionBeyondTwoSteps(of.graph, of.triangles));
-}
-
 TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const Case noisy = noisySphere(200, 0.5, 26);
   for (const auto& [of, is_noisy] :
