@@ -19,14 +19,6 @@ TEST(Judgement, ThePapersMethodMeshesWhatIsNoSphereAsOneAndReportsIt) {
   }
 }
 
-TEST(Judgement, PartsOnARingAreCountedOnce) {
-  const Positions pair = twoSpheres(200, 200, 4.0);
-  const Positions ring = horizontally(pair, pair.colwise() + Eigen::Vector3d(0.0, 4.0, 0.0));
-  const SurfaceDiagnosis diagnosis = mesh(ring, sphere()).diagnosis;
-  EXPECT_EQ(diagnosis.bridges.size(), 4U);
-  EXPECT_EQ(diagnosis.joined_parts, 4U);
-}
-
 TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
   const Positions points = randomCube(6000, 1);
   const Surface result = mesh(points, quick());
@@ -104,11 +96,6 @@ TEST(Judgement, SmoothingMovesThePointsAlone) {
   EXPECT_NEAR(result.smoothing->max_displacement, moved.maxCoeff(), 1e-12);
   EXPECT_NEAR(result.smoothing->volume_before, rough.measures.volume, 1e-12);
   EXPECT_NEAR(result.smoothing->volume_after, result.measures.volume, 1e-12);
-  EXPECT_NEAR(result.measures.volume, rough.measures.volume, 1e-3 * rough.measures.volume);
-  const auto deviation = [](const Positions& of) {
-    return (of.colwise().norm().array() - 1.0).matrix().norm();
-  };
-  EXPECT_LT(deviation(result.points), 0.5 * deviation(vertices));
 }
 
 }  // namespace
