@@ -30,22 +30,6 @@ double distanceFromBoundary(const Mapped& mesh, const Vector3d& point) {
   return least;
 }
 
-TEST(Caps, CloseAMeshBehindItsVerticesAndTriangles) {
-  const Mapped open = test::openBumpy(1500);
-  ASSERT_TRUE(checkTopology(open.triangles, columnCount(open.points)).isOpenSurface());
-  const internal::CappedMesh capped = internal::capOpenings(open.points, open.triangles);
-  EXPECT_EQ(capped.points.leftCols(open.points.cols()), open.points);
-  EXPECT_EQ(capped.triangles.leftCols(open.triangles.cols()), open.triangles);
-  EXPECT_TRUE(checkTopology(capped.triangles, columnCount(capped.points)).isSphere());
-  // Each cap has one hub at least, the mean of its loop, and no vertex farther out than the loop.
-  EXPECT_LT(capped.points.colwise().norm().maxCoeff(),
-            open.points.colwise().norm().maxCoeff() + 1e-12);
-  EXPECT_TRUE(internal::boundaryLoops(capped.triangles, columnCount(capped.points)).empty());
-
-  const Mapped closed = test::bumpy(test::spiralSphere(100));
-  EXPECT_EQ(internal::capOpenings(closed.points, closed.triangles).triangles, closed.triangles);
-}
-
 TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
   const Mapped open = test::openBumpy(1500);
   EXPECT_GT(open.caps.cols(), 0);

@@ -142,17 +142,5 @@ TEST(SphereMap, TurnsWithItsStartAndNotWithTheMesh) {
   EXPECT_LT((of_mesh.sphere - map.sphere).cwiseAbs().maxCoeff(), 0.02);
 }
 
-TEST(SphereMap, LevelsEndAtATetrahedron) {
-  const Mapped mesh = test::octasphere(16);
-  const std::vector<SphereMapLevel> levels = mapOf(mesh).levels;
-  ASSERT_FALSE(levels.empty());
-  EXPECT_EQ(levels.front().vertices, static_cast<std::size_t>(mesh.points.cols()));
-  EXPECT_EQ(levels.back().vertices, 4U);
-  for (std::size_t l = 0; l < levels.size(); ++l) {
-    EXPECT_TRUE(std::isfinite(levels[l].energy) && levels[l].energy > 0.0);
-    EXPECT_TRUE(l == 0 || levels[l].vertices < levels[l - 1].vertices);
-  }
-}
-
 }  // namespace
 }  // namespace spherical_param
