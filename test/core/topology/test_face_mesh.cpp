@@ -3,6 +3,7 @@
 #include "graph_building.h"
 #include "graphs.h"
 #include "handle_shapes.h"
+#include "open_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
@@ -70,6 +71,21 @@ TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
   const auto mesh = meshOf(points, withEdges(graphOfMesh(points, triangles), bridges));
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(isSphereOverAll(*mesh, spheres * n));
+}
+
+TEST(FaceMesh, TrianglesThatFillALoopAreOpen) {
+  // The loop around a hole has more than 20 points.
+  const Positions points = sphereWithHoles(1000, 1, 0.4);
+  const auto mesh = facesOf(points, localDelaunayGraph(points).graph);
+  ASSERT_TRUE(mesh);
+  Index fillings = 0;
+  for (Index t = 0; t < mesh->size(); ++t)
+    if (mesh->isOpen(t)) {
+      ++fillings;
+      for (const Index v : mesh->vertices(t))
+        EXPECT_LT((points.col(v) - spiralSphere(1).col(0)).norm(), 0.6);
+    }
+  EXPECT_GT(fillings, 15);
 }
 
 TEST(FaceMesh, NeedsMoreFacesThanOneTriangle) {
