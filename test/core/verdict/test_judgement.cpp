@@ -19,6 +19,14 @@ TEST(Judgement, ThePapersMethodMeshesWhatIsNoSphereAsOneAndReportsIt) {
   }
 }
 
+TEST(Judgement, PartsOnARingAreCountedOnce) {
+  const Positions pair = twoSpheres(200, 200, 4.0);
+  const Positions ring = horizontally(pair, pair.colwise() + Eigen::Vector3d(0.0, 4.0, 0.0));
+  const SurfaceDiagnosis diagnosis = mesh(ring, sphere()).diagnosis;
+  EXPECT_EQ(diagnosis.bridges.size(), 4U);
+  EXPECT_EQ(diagnosis.joined_parts, 4U);
+}
+
 TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
   const Positions points = randomCube(6000, 1);
   const Surface result = mesh(points, quick());

@@ -1,6 +1,7 @@
 #include "view_search.h"
 
 #include "depth_images.h"
+#include "depth_jumps.h"
 #include "handle_shapes.h"
 #include "neighbor_search.h"
 #include "open_shapes.h"
@@ -73,6 +74,31 @@ TEST(ViewSearch, FindsNoneOfObjects) {
   Positions part = terrain(9000).leftCols(3000);
   part.row(2).array() += 3.0;
   EXPECT_FALSE(found(horizontally(sheet, part)));
+}
+
+TEST(ViewSearch, RecognisesElevationGrids) {
+  const Positions grid = gridOf(20, 30, [](int row, int column) {
+    return Eigen::Vector3d(column, 0.5 * row, std::sin(0.3 * column));
+  });
+  EXPECT_TRUE(isElevationGrid(grid));
+  EXPECT_FALSE(isElevationGrid(terrain(600)));
+}
+
+TEST(ViewSearch, SightOfTwoLayersIsRoughOrMixed) {
+  const auto sight = [](const Positions& points) {
+    return assessView(points, spacingOf(points, {}),
+                      triangulateView(points, Eigen::Vector3d::Zero(), {}));
+  };
+  const Positions image = depthImage(60, 50, boxBeforeWall);
+  EXPECT_TRUE(sight(image).isOneLayer());
+  EXPECT_LT(sight(image).layers, 0.001);
+  const Positions other = depthImage(59, 49, [](double, double) { return 1.0; });
+  EXPECT_FALSE(sight(horizontally(image, other)).isOneLayer());
+  EXPECT_GT(sight(horizontally(image, other)).layers, 0.1);
+  const Positions near = depthImage(59, 49, [](double x, double y) {
+    return boxBeforeWall(x, y) - 0.12;  // three spacings
+  });
+  EXPECT_FALSE(sight(horizontally(image, near)).isOneLayer());
 }
 
 }  // namespace
