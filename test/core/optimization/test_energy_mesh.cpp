@@ -106,5 +106,16 @@ TEST(EnergyMesh, IntersectionsAreThoseOfItsTrianglesAlsoAfterChanges) {
   }
 }
 
+TEST(EnergyMesh, GainsAndCostsBeyondTheirBoundsAreExact) {
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    for (Index t = 0; t < mesh.mesh().size(); ++t) {
+      for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(mesh.flipGain(t, k, 0.0), std::max(mesh.flipGain(t, k, -kInfinity), 0.0));
+      EXPECT_EQ(mesh.splitCost(t, 7, 0.1), std::min(mesh.splitCost(t, 7, kInfinity), 0.1));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::test

@@ -21,8 +21,10 @@ TEST(ResultUnits, PointsWithoutAVertexAreNotMerged) {
   EXPECT_EQ(surface.consolidation->merged, 1U);
 
   std::vector<Index> unmeshed;
-  toCloud({}, {0, 1, 2, 3, 4, 5}, surface, unmeshed);
-  EXPECT_EQ(unmeshed, (std::vector<Index>{0, 1}));
+  toCloud({}, {10, 11, 12, 13, 14, 15}, surface, unmeshed);
+  EXPECT_EQ(unmeshed, (std::vector<Index>{10, 11}));
+  EXPECT_EQ(surface.inputs, (std::vector<Index>{12, 13, 14, 15}));
+  EXPECT_EQ(surface.input_of_vertex, (std::vector<Index>{12, 15}));
   EXPECT_EQ(surface.duplicates(), 1U);
 }
 
