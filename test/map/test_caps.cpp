@@ -49,18 +49,6 @@ TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
   EXPECT_LT(distortion.area.mean, 1.3);
 }
 
-TEST(Caps, AreNoPartOfTheSurface) {
-  const Mapped open = test::openBumpy(1500);
-  const SphereSurface surface = open.surface(SurfaceFit::Smooth);
-  EXPECT_TRUE(surface.isOpen());
-  EXPECT_FALSE(test::bumpy(test::spiralSphere(100)).surface().isOpen());
-  EXPECT_NEAR(surface.area(), surfaceArea(open.points, open.triangles), 1e-9);
-  for (Eigen::Index i = 0; i < open.points.cols(); ++i)
-    EXPECT_FALSE(surface.isCap(surface.locate(open.sphere.col(i)).triangle));
-  for (Eigen::Index i = 0; i < open.caps.cols(); ++i)
-    EXPECT_TRUE(surface.isCap(surface.locate(open.caps.col(i)).triangle));
-}
-
 TEST(Caps, ResamplingLeavesTheOpeningsOpen) {
   const Mapped open = test::openBumpy(3000);
   const SphereSurface surface = open.surface(SurfaceFit::Linear);

@@ -15,19 +15,6 @@ Matrix3d found(const SphereSurface& first, const SphereSurface& second) {
   return searchRotation(first, second, {}, 0, {});
 }
 
-TEST(RotationSearch, FindsTheRotationOfAnotherSampling) {
-  // Size and place are free.
-  const Matrix3d rotation = test::rotationBy(2.2, {0.2, -1.0, 0.4});
-  Mapped other =
-      test::firstBlob().over(test::rotationBy(1.0, {1, 1, 0}) * test::spiralSphere(1500));
-  other.points = (7.0 * other.points).colwise() + Vector3d(3, -50, 8);
-  const SphereSurface first = test::firstBlob().over(test::spiralSphere(2000)).surface();
-  const SphereSurface second = transformed(other, rotation).surface();
-  const Matrix3d result = found(first, second);
-  EXPECT_LT((result - rotation).norm(), 1e-2);
-  EXPECT_LT(alignmentError(first, second, result, 0), 1e-4);
-}
-
 TEST(RotationSearch, ErrorIsTheMeanSquaredDistanceAtArea1) {
   // Points of a sphere of area 1 that is turned: the mean of |u - R u|^2 is 4/3 (1 - cos angle).
   const Mapped mesh = test::mapped(test::spiralSphere(16000));

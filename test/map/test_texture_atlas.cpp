@@ -113,6 +113,18 @@ TEST_P(TextureAtlasOfChart, NoTriangleWrapsRoundOrIsTurnedOverAndAllAreAtTheirDi
   }
 }
 
+TEST_P(TextureAtlasOfChart, PlacesAndDirectionsAreInverse) {
+  Positions directions = test::randomSphere(1000, 5);
+  for (int i = 0; i < 27; ++i)
+    if (i != 13)
+      directions.col(i) = Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).normalized();
+  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    const Vector2d place = chartCoordinates(options(), directions.col(i));
+    EXPECT_LT((test::directionAt(options(), place) - directions.col(i)).norm(), 1e-14);
+    EXPECT_LT((chartCoordinates(options(), 7.0 * directions.col(i)) - place).norm(), 1e-15);
+  }
+}
+
 TEST(Equirectangular, APoleHasACoordinateInTheMiddleOfEachOfItsTriangles) {
   const Mapped mesh = test::mapped(test::randomSphere(500, 3));
   const TextureAtlas atlas =
