@@ -1,6 +1,7 @@
 #include "smooth_fill.h"
 
 #include "core/reconstructions.h"
+#include "indexed.h"
 
 namespace spherical_param::test {
 namespace {

@@ -1,5 +1,6 @@
 #include "core/reconstructions.h"
 #include "depth_images.h"
+#include "indexed.h"
 #include "open_shapes.h"
 
 namespace spherical_param::test {

@@ -36,23 +36,6 @@ TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
   expect_cube(4, 60, 3);
 }
 
-TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
-  // The last is a disc whose two faces are, in the middle, half as far apart as their points.
-  const Case hulls[] = {ellipsoid(800, 0.8, 0.6), ellipsoid(600, 1.0, 0.25 * sphereSpacing(600))};
-  for (const Case& hull : hulls) {
-    const Case of = scrambled(hull, 2000, 1);
-    EXPECT_GT(findSelfIntersections(of.points, of.triangles).size(), 300U);
-    const MeshOptimization result = optimize(of);
-    expectGuarantees(of, result);
-    EXPECT_TRUE(result.intersecting.pairs.empty());
-    // Some diagonals of nearly square cells may be the other ones.
-    EXPECT_LE(energyOf(of.points, result.mesh.triangles()),
-              1.01 * energyOf(of.points, hull.triangles));
-    const double volume = volumeOf(of.points, hull.triangles);
-    EXPECT_NEAR(volumeOf(of.points, result.mesh.triangles()), volume, 0.01 * volume);
-  }
-}
-
 TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const Case noisy = noisySphere(200, 0.5, 26);
   for (const auto& [of, is_noisy] :
