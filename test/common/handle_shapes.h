@@ -111,18 +111,6 @@ inline Positions gear(double spacing) {
       {2.4, 2.4, 0.8}, spacing);
 }
 
-/// A tube along a trefoil: genus 1, knotted.
-inline Positions trefoil(double spacing) {
-  const auto curve = [](double t) {
-    return Eigen::Vector3d(std::sin(t) + 2.0 * std::sin(2.0 * t),
-                           std::cos(t) - 2.0 * std::cos(2.0 * t), -1.5 * std::sin(3.0 * t));
-  };
-  std::vector<std::array<Eigen::Vector3d, 2>> segments;
-  for (int i = 0; i < 80; ++i)
-    segments.push_back({curve(2.0 * kPi * i / 80), curve(2.0 * kPi * (i + 1) / 80)});
-  return netOf(tubesAround(segments, 0.45), {7.5, 7.5, 4.5}, spacing);
-}
-
 /// Tubes along the edges of a 3 x 3 x 3 grid of nodes: 54 - 27 + 1 = 28 handles.
 inline Positions latticeOfTubes(double spacing) {
   std::vector<std::array<Eigen::Vector3d, 2>> segments;

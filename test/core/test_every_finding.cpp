@@ -142,18 +142,6 @@ TEST(EveryFinding, OfWhatAnOptionForbidsNamesThatOption) {
   }
 }
 
-TEST(EveryFinding, ABaseThatIsClosedOnRequestIsSound) {
-  const Positions& points = clouds().at("no base");
-  const Surface open = surfaceOf(points);
-  expectSound(open, 0, 1);
-  ASSERT_EQ(open.findings.size(), 1U);
-  EXPECT_EQ(open.findings[0].option, "surface");
-  const Surface closed = surfaceOf(points, given("surface", "closed"));
-  expectSound(closed, 0, 0);
-  EXPECT_EQ(closed.vertexCount(), static_cast<std::size_t>(points.cols()));
-  EXPECT_TRUE(closed.findings.empty());
-}
-
 TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
   const auto texts_of = [](const std::string& name, const Options& options = {}) {
     std::string texts;

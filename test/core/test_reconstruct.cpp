@@ -114,25 +114,6 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutward) {
     }
 }
 
-TEST(Reconstruct, AskingForDetailsChangesNoBit) {
-  const Positions rough = withNoise(ellipsoid(1500), 0.004, 10);
-  const Positions repeated = horizontally(rough, rough.leftCols(150));
-  const Positions points = repeated(Eigen::all, shuffledRange(1650, 7));
-  for (Options options : bothMethods()) {
-    options.paper.max_iterations = 40;
-    options.smoothing = options.method == Method::Paper ? 2 : 0;
-    const Surface alone = surfaceOf(points, options);
-    EXPECT_TRUE(alone.vertex_residuals.empty() && alone.diagnosis.triangle_marks.empty());
-    const Surface seen = surfaceOf(points, watched(options));
-    EXPECT_EQ(alone.triangles, seen.triangles);
-    EXPECT_EQ(alone.sphere, seen.sphere);
-    EXPECT_EQ(alone.points, seen.points);
-    EXPECT_EQ(alone.self_intersections, seen.self_intersections);
-    EXPECT_EQ(alone.verdict, seen.verdict);
-    EXPECT_EQ(alone.embedding.residual, seen.embedding.residual);
-  }
-}
-
 TEST(Reconstruct, EveryOptionReachesItsStage) {
   using Change = std::pair<std::string, OptionValue>;
   const Positions points = ellipsoid(1500);

@@ -30,22 +30,6 @@ double distanceFromBoundary(const Mapped& mesh, const Vector3d& point) {
   return least;
 }
 
-TEST(Caps, CloseAMeshBehindItsVerticesAndTriangles) {
-  const Mapped open = test::openBumpy(1500);
-  ASSERT_TRUE(checkTopology(open.triangles, columnCount(open.points)).isOpenSurface());
-  const internal::CappedMesh capped = internal::capOpenings(open.points, open.triangles);
-  EXPECT_EQ(capped.points.leftCols(open.points.cols()), open.points);
-  EXPECT_EQ(capped.triangles.leftCols(open.triangles.cols()), open.triangles);
-  EXPECT_TRUE(checkTopology(capped.triangles, columnCount(capped.points)).isSphere());
-  // Each cap has one hub at least, the mean of its loop, and no vertex farther out than the loop.
-  EXPECT_LT(capped.points.colwise().norm().maxCoeff(),
-            open.points.colwise().norm().maxCoeff() + 1e-12);
-  EXPECT_TRUE(internal::boundaryLoops(capped.triangles, columnCount(capped.points)).empty());
-
-  const Mapped closed = test::bumpy(test::spiralSphere(100));
-  EXPECT_EQ(internal::capOpenings(closed.points, closed.triangles).triangles, closed.triangles);
-}
-
 TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
   const Mapped open = test::openBumpy(1500);
   EXPECT_GT(open.caps.cols(), 0);
@@ -63,18 +47,6 @@ TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
   const MapDistortion distortion = measureMapDistortion(open.points, open.triangles, open.sphere);
   EXPECT_LT(distortion.angle.mean, 1.3);
   EXPECT_LT(distortion.area.mean, 1.3);
-}
-
-TEST(Caps, AreNoPartOfTheSurface) {
-  const Mapped open = test::openBumpy(1500);
-  const SphereSurface surface = open.surface(SurfaceFit::Smooth);
-  EXPECT_TRUE(surface.isOpen());
-  EXPECT_FALSE(test::bumpy(test::spiralSphere(100)).surface().isOpen());
-  EXPECT_NEAR(surface.area(), surfaceArea(open.points, open.triangles), 1e-9);
-  for (Eigen::Index i = 0; i < open.points.cols(); ++i)
-    EXPECT_FALSE(surface.isCap(surface.locate(open.sphere.col(i)).triangle));
-  for (Eigen::Index i = 0; i < open.caps.cols(); ++i)
-    EXPECT_TRUE(surface.isCap(surface.locate(open.caps.col(i)).triangle));
 }
 
 TEST(Caps, ResamplingLeavesTheOpeningsOpen) {

@@ -130,32 +130,6 @@ TEST(Morphing, MeshesOnCommonGreatCirclesAreLaidOverEachOther) {
     }
 }
 
-TEST(Morphing, PairsAreOneVertex) {
-  const Mapped first = firstBlob().over(test::spiralSphere(800));
-  const Mapped second = secondBlob().over(test::randomSphere(700, 7));
-  std::mt19937_64 random(8);
-  for (const std::size_t count : {1U, 2U, 7U, 40U}) {
-    Pairs pairs;
-    std::set<Index> used;
-    while (pairs.size() < count) {
-      // Each to one near it, apart from the others.
-      const auto a = static_cast<Index>(random() % 800);
-      const Vector3d place = first.sphere.col(a);
-      const Index b =
-          nearestTo(place + (count < 10 ? 0.3 : 0.05) *
-                                test::randomSphere(1, static_cast<unsigned>(a) + 1U).col(0),
-                    second);
-      if (std::all_of(pairs.begin(), pairs.end(),
-                      [&](const PointPair& pair) {
-                        return (first.sphere.col(pair.first) - place).norm() > 0.2;
-                      }) &&
-          used.insert(b).second)
-        pairs.push_back({a, b});
-    }
-    EXPECT_TRUE(soundMorphOf(first, second, unaligned(pairs)).impossible.empty()) << count;
-  }
-}
-
 TEST(Morphing, PairsMayBeFarApartButNotChangePlaces) {
   const Mapped first = firstBlob().over(test::spiralSphere(400));
   const Mapped second = secondBlob().over(test::spiralSphere(500));

@@ -43,20 +43,6 @@ TEST(GridSphere, IsAClosedMeshThatCoversTheSphereOnce) {
     }
 }
 
-TEST(GridSphere, HasTheSymmetryOfItsSolid) {
-  // A third of a turn about (1, 1, 1) moves the axes in a circle, and half a turn two of them.
-  Eigen::Matrix3d third = Eigen::Matrix3d::Zero();
-  third(0, 1) = third(1, 2) = third(2, 0) = 1.0;
-  const Eigen::Matrix3d half = Vector3d(-1.0, -1.0, 1.0).asDiagonal();
-  for (const SphereGrid kind : kGrids)
-    for (const Eigen::Matrix3d& turn : {third, half}) {
-      const Positions directions = makeGridSphere(kind, 5).directions;
-      for (Eigen::Index i = 0; i < directions.cols(); ++i)
-        EXPECT_LT((directions.colwise() - turn * directions.col(i)).colwise().norm().minCoeff(),
-                  1e-14);
-    }
-}
-
 TEST(GridSphere, FrequencyIsTheOneWhoseVerticesAreNearest) {
   for (const SphereGrid kind : kGrids)
     for (std::size_t n = 0; n < 3000; n += 7) {

@@ -15,19 +15,6 @@ Matrix3d found(const SphereSurface& first, const SphereSurface& second) {
   return searchRotation(first, second, {}, 0, {});
 }
 
-TEST(RotationSearch, FindsTheRotationOfAnotherSampling) {
-  // Size and place are free.
-  const Matrix3d rotation = test::rotationBy(2.2, {0.2, -1.0, 0.4});
-  Mapped other =
-      test::firstBlob().over(test::rotationBy(1.0, {1, 1, 0}) * test::spiralSphere(1500));
-  other.points = (7.0 * other.points).colwise() + Vector3d(3, -50, 8);
-  const SphereSurface first = test::firstBlob().over(test::spiralSphere(2000)).surface();
-  const SphereSurface second = transformed(other, rotation).surface();
-  const Matrix3d result = found(first, second);
-  EXPECT_LT((result - rotation).norm(), 1e-2);
-  EXPECT_LT(alignmentError(first, second, result, 0), 1e-4);
-}
-
 TEST(RotationSearch, ErrorIsTheMeanSquaredDistanceAtArea1) {
   // Points of a sphere of area 1 that is turned: the mean of |u - R u|^2 is 4/3 (1 - cos angle).
   const Mapped mesh = test::mapped(test::spiralSphere(16000));
@@ -52,16 +39,10 @@ TEST(RotationSearch, NoOtherRotationIsBetterAndExchangingTheSurfacesInvertsIt) {
 
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  const auto expect_worse = [&](const Matrix3d& other) {
-    EXPECT_GT(alignmentError(first, second, other, 0), error);
-  };
-  for (int i = 0; i < 1000; ++i)
-    expect_worse(Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-                     .normalized()
-                     .toRotationMatrix());
-  for (int i = 0; i < 200; ++i)
-    expect_worse(test::rotationBy(0.1 * normal(random), {normal(random), normal(random), 0.5}) *
-                 rotation);
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Quaterniond other(normal(random), normal(random), normal(random), normal(random));
+    EXPECT_GT(alignmentError(first, second, other.normalized().toRotationMatrix(), 0), error);
+  }
 }
 
 TEST(RotationSearch, PairsDecideWhereTheShapesDoNot) {

@@ -37,15 +37,6 @@ Mapped stretchedSphere(int parts, const Vector3d& axes) {
   return mesh;
 }
 
-TEST(SphereMap, ASphereMapsToItself) {
-  Mapped mesh = test::octasphere(16);
-  mesh.points *= 2.5;
-  const SphereMap map = soundMapOf(mesh);
-  EXPECT_LT(map.distortion.angle.mean, 1.01);
-  EXPECT_LT(map.distortion.area.mean, 1.01);
-  EXPECT_LT((map.sphere - mesh.sphere).colwise().norm().maxCoeff(), 0.05);
-}
-
 TEST(SphereMap, KeepsTheAreasOfAnEllipsoidAndOfANeedle) {
   const SphereMap map = soundMapOf(stretchedSphere(16, {1.0, 1.0, 3.0}));
   EXPECT_GT(map.before.area.mean, 1.5);
@@ -140,18 +131,6 @@ TEST(SphereMap, TurnsWithItsStartAndNotWithTheMesh) {
   const SphereMap of_mesh = mapOf({1e6 * turn * mesh.points, mesh.triangles, sphere});
   // Rounding may change the order of the collapses of a few vertices.
   EXPECT_LT((of_mesh.sphere - map.sphere).cwiseAbs().maxCoeff(), 0.02);
-}
-
-TEST(SphereMap, LevelsEndAtATetrahedron) {
-  const Mapped mesh = test::octasphere(16);
-  const std::vector<SphereMapLevel> levels = mapOf(mesh).levels;
-  ASSERT_FALSE(levels.empty());
-  EXPECT_EQ(levels.front().vertices, static_cast<std::size_t>(mesh.points.cols()));
-  EXPECT_EQ(levels.back().vertices, 4U);
-  for (std::size_t l = 0; l < levels.size(); ++l) {
-    EXPECT_TRUE(std::isfinite(levels[l].energy) && levels[l].energy > 0.0);
-    EXPECT_TRUE(l == 0 || levels[l].vertices < levels[l - 1].vertices);
-  }
 }
 
 }  // namespace

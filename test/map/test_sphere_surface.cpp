@@ -154,18 +154,6 @@ TEST(SphereSurface, NormalsAreUnitVectorsOutward) {
   }
 }
 
-TEST(SphereSurface, LinearFitIsTheMeshAndItsArea) {
-  const Mapped map = test::bumpy(test::randomSphere(300, 1));
-  const SphereSurface surface = map.surface();
-  const SurfaceSamples samples = surface.evaluate(test::randomSphere(300, 2));
-  for (Eigen::Index i = 0; i < samples.positions.cols(); ++i) {
-    const SphereLocation& location = samples.locations[static_cast<std::size_t>(i)];
-    const Eigen::Matrix3d corners = map.points(Eigen::all, map.triangles.col(location.triangle));
-    EXPECT_LT((samples.positions.col(i) - corners * location.weights).norm(), 1e-14);
-  }
-  EXPECT_NEAR(test::octasphere(1).surface().area(), 4.0 * std::sqrt(3.0), 1e-14);
-}
-
 TEST(SphereSurface, OneDirectionGivesTheSameAsManyAlsoWhenMoved) {
   const Positions directions = test::randomSphere(50, 2);
   SphereSurface original = test::bumpy(test::randomSphere(300, 1)).surface(SurfaceFit::Smooth);

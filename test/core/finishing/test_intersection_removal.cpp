@@ -7,37 +7,18 @@
 namespace spherical_param::test {
 namespace {
 
-/// Of a closed mesh, whose pairs are found before.
-Removal clearIntersections(const Positions& points, const Removal& most, SphereMesh& mesh) {
-  return internal::clearIntersections(points, findSelfIntersections(points, mesh.triangles()), most,
-                                      mesh);
-}
-
-/// A sphere with a vertex that was pulled through its middle, and out on the other side.
-struct Pierced {
-  Pierced() : mesh(triangulateSphere(points), 400) { points.col(200) *= -1.5; }
-
-  std::size_t intersections() const {
-    return findSelfIntersections(points, mesh.surfaceTriangles()).size();
-  }
-
-  Positions points = spiralSphere(400);
-  SphereMesh mesh;
-};
-
 TEST(IntersectionRemoval, OtherPlacesInTheMeshKeepEveryVertex) {
   const auto expect_clear = [](const Positions& points, SphereMesh mesh) {
     const auto n = static_cast<Index>(points.cols());
-    ASSERT_FALSE(findSelfIntersections(points, mesh.triangles()).empty());
-    const Removal removal = clearIntersections(points, {20, 20}, mesh);
+    const auto pairs = findSelfIntersections(points, mesh.triangles());
+    ASSERT_FALSE(pairs.empty());
+    const Removal removal = clearIntersections(points, pairs, {20, 20}, mesh);
     EXPECT_EQ(removal.vertices + removal.triangles, 0U);
     EXPECT_TRUE(isSphereOverAll(mesh.triangles(), n));
     EXPECT_TRUE(findSelfIntersections(points, mesh.triangles()).empty());
   };
   const Case scrambled = scrambledEllipsoid(300, 0.3, 100, 2);
   expect_clear(scrambled.points, SphereMesh(scrambled.triangles, 300));
-  const Pierced pierced;
-  expect_clear(pierced.points, pierced.mesh);
   // Noise of a spacing: hundreds of intersections.
   const Positions noisy = withNoise(spiralSphere(600), sphereSpacing(600), 1);
   expect_clear(noisy, SphereMesh(triangulateSphere(spiralSphere(600)), 600));
@@ -61,7 +42,7 @@ TEST(IntersectionRemoval, WhereNoPlaceHelpsAVertexOrTrianglesAreLeftOutWithinLim
       for (Index& t : pair)
         t = surface[static_cast<std::size_t>(t)];
     const std::size_t vertices = mesh.surfaceVertexCount();
-    const Removal removal = internal::clearIntersections(points, pairs, most, mesh);
+    const Removal removal = clearIntersections(points, pairs, most, mesh);
     EXPECT_EQ(removal.vertices, most.vertices);
     EXPECT_EQ(removal.triangles > 0U, most.triangles > 0U);
     EXPECT_EQ(findSelfIntersections(points, mesh.surfaceTriangles()).empty(),
@@ -89,16 +70,6 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   EXPECT_TRUE(topology.manifold() && topology.oriented);
   EXPECT_EQ(topology.components, 1U);
   EXPECT_GT(surface.cols(), 700);
-}
-
-TEST(IntersectionRemoval, CountsWhatIsLeftOutBecauseItIntersects) {
-  // Nothing hangs on what intersects at one vertex.
-  Pierced sphere;
-  const auto pairs = findSelfIntersections(sphere.points, sphere.mesh.triangles());
-  const std::size_t left_out = leaveOutTangles(400, pairs, sphere.mesh);
-  EXPECT_EQ(left_out + sphere.mesh.surfaceCount(), 796U);
-  EXPECT_GT(left_out, 0U);
-  EXPECT_EQ(sphere.intersections(), 0U);
 }
 
 TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {

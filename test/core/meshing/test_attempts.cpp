@@ -17,10 +17,8 @@ void expectSoundWithHandles(const Surface& result, Index genus) {
 }
 
 TEST(Attempts, HandlesAreMeshed) {
-  expectSoundWithHandles(surfaceOf(torusCloud(60, 24)), 1);
   expectSoundWithHandles(surfaceOf(doubleTorus(0.1)), 2);
   expectSoundWithHandles(surfaceOf(plateWithHoles(0.1)), 5);
-  expectSoundWithHandles(surfaceOf(trefoil(0.2)), 1);
   expectSoundWithHandles(surfaceOf(latticeOfTubes(0.07)), 28);
   expectSoundWithHandles(surfaceOf(gear(0.07)), 1);
   const Positions lattice = latticeOfTubes(0.05);
@@ -34,23 +32,11 @@ bool hasEmbedding(const Result& result) {
                      [](const StageTime& stage) { return stage.name == "embedding"; });
 }
 
-TEST(Attempts, HandlesOfFacesThatCloseUpNeedNoEmbedding) {
-  // Of a flat ring, the sphere costs hardly more energy than the faces.
-  Positions flat = torusCloud(90, 24);
-  flat.row(2) *= 0.5;
-  for (const Positions& points : {torusCloud(60, 24), flat}) {
-    const Result result = reconstruct(points);
-    expectSoundWithHandles(result.surfaces.front(), 1);
-    EXPECT_FALSE(hasEmbedding(result));
-  }
-}
-
 TEST(Attempts, ThinTubesAndFatTori) {
   // Of 4 to 9 points around the tube, and of the least sizes.
-  for (const int around : {4, 6, 9})
+  for (const int around : {4, 9})
     EXPECT_EQ(surfaceOf(torusCloud(40, around, 1.0, 0.0225 * around)).topology.genus, 1) << around;
-  for (const int rings : {24, 32})
-    EXPECT_EQ(surfaceOf(torusCloud(rings, 12, 1.0, 0.5)).topology.genus, 1) << rings;
+  EXPECT_EQ(surfaceOf(torusCloud(24, 12, 1.0, 0.5)).topology.genus, 1);
 }
 
 /// A random point of a torus of radius 1.
@@ -114,7 +100,10 @@ TEST(Attempts, WhereTheFacesCloseUpThereIsASphereOnRequestAlone) {
     }
     EXPECT_EQ(surfaceOf(points, sphere()).sphere.cols(), points.cols());
   }
-  EXPECT_EQ(surfaceOf(torusCloud(40, 16), watched()).sphere.cols(), 0);
+  const Result torus = reconstruct(torusCloud(60, 24), watched());
+  expectSoundWithHandles(torus.surface(), 1);
+  EXPECT_FALSE(hasEmbedding(torus));
+  EXPECT_EQ(torus.surface().sphere.cols(), 0);
 }
 
 TEST(Attempts, AFalseHandleOfNoiseIsNotTakenWhereASphereIsSound) {
@@ -152,17 +141,6 @@ TEST(Attempts, HandlesBesideOpenings) {
   }
 }
 
-TEST(Attempts, LinkedRingsAreTwoParts) {
-  const Positions ring = torusCloud(80, 20, 1.0, 0.25);
-  Positions linked = ring;
-  linked.row(1).swap(linked.row(2));
-  linked.row(0).array() += 1.0;
-  const Result result = reconstruct(horizontally(ring, linked), given("parts", "each"));
-  ASSERT_EQ(result.surfaces.size(), 2U);
-  for (const Surface& surface : result.surfaces)
-    expectSoundWithHandles(surface, 1);
-}
-
 TEST(Attempts, ToriThatTouchAndOneSidedSurfacesHaveFindings) {
   Positions tori = horizontally(torusCloud(60, 24), torusCloud(60, 24));
   tori.row(0).tail(60 * 24).array() += 2.82;
@@ -189,9 +167,6 @@ TEST(Attempts, WorksWithTheOtherOptions) {
   const Positions scattered =
       horizontally(withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));
   EXPECT_EQ(surfaceOf(scattered, consolidated).topology.genus, 1);
-  EXPECT_EQ(surfaceOf(torus, quick()).topology.genus, 1);
-  // The published method is a sphere.
-  EXPECT_EQ(surfaceOf(torus, quick(paper())).topology.genus, 0);
 }
 
 TEST(Attempts, WithinATimeLimitThereIsASurface) {

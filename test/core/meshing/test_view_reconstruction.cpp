@@ -1,5 +1,6 @@
 #include "core/reconstructions.h"
 #include "depth_images.h"
+#include "indexed.h"
 #include "open_shapes.h"
 
 namespace spherical_param::test {
@@ -128,15 +129,6 @@ TEST(ViewReconstruction, FilledGapsAreListedAndMayBeSmooth) {
             static_cast<std::ptrdiff_t>(flat.openings.back().triangles.size()));
   options.fill = FillMode::Smooth;
   EXPECT_GT(reconstruct(points, options).surface().added_vertices, 30U);
-}
-
-TEST(ViewReconstruction, WithNormalsFacesAsTheyDo) {
-  const Positions points = depthImage(60, 40, boxBeforeWall);
-  CloudInfo info;
-  info.normals = points;  // away from the sensor
-  const Result result = reconstruct(points, seenFrom(Eigen::Vector3d::Zero()), {}, info);
-  for (const Surface& surface : result.surfaces)
-    EXPECT_EQ(surface.faced_by, FacedBy::Normals);
 }
 
 TEST(ViewReconstruction, OfASphereIsItsMapFromAGivenPlace) {

@@ -36,37 +36,6 @@ TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
   expect_cube(4, 60, 3);
 }
 
-TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
-  // The last is a disc whose two faces are, in the middle, half as far apart as their points.
-  const Case hulls[] = {ellipsoid(800, 0.8, 0.6), ellipsoid(600, 1.0, 0.25 * sphereSpacing(600))};
-  for (const Case& hull : hulls) {
-    const Case of = scrambled(hull, 2000, 1);
-    EXPECT_GT(findSelfIntersections(of.points, of.triangles).size(), 300U);
-    const MeshOptimization result = optimize(of);
-    expectGuarantees(of, result);
-    EXPECT_TRUE(result.intersecting.pairs.empty());
-    // Some diagonals of nearly square cells may be the other ones.
-    EXPECT_LE(energyOf(of.points, result.mesh.triangles()),
-              1.01 * energyOf(of.points, hull.triangles));
-    const double volume = volumeOf(of.points, hull.triangles);
-    EXPECT_NEAR(volumeOf(of.points, result.mesh.triangles()), volume, 0.01 * volume);
-  }
-}
-
-TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
-  // Seen from its centroid, the tube hides much of itself; nothing intersects, but much is spiky.
-  const Mesh tube = bentTube(10.0, 2.0, 12);
-  const Case of = radialStart(withNoise(tube.points, 0.01, 4));
-  const MeshOptimization result = optimize(of);
-  expectGuarantees(of, result);
-  ASSERT_FALSE(result.report.is_noisy);
-  const double least = energyOf(of.points, tube.triangles);
-  EXPECT_GT(energyOf(of.points, of.triangles), 4.0 * least);
-  EXPECT_LT(energyOf(of.points, result.mesh.triangles()), 1.1 * least);
-  EXPECT_LT(fractionBeyondTwoSteps(of.graph, result.mesh.triangles()),
-            0.2 * fractionBeyondTwoSteps(of.graph, of.triangles));
-}
-
 TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const Case noisy = noisySphere(200, 0.5, 26);
   for (const auto& [of, is_noisy] :

@@ -58,27 +58,5 @@ TEST(RuinAndRecreate, TheCallerDecidesWhatIsAccepted) {
   }
 }
 
-TEST(RuinAndRecreate, SpreadsFromTheSeedsOverTheEdges) {
-  const Case of = ellipsoid(300, 0.8, 0.6);
-  EnergyMesh mesh = meshOf(of);
-  Flips flips(mesh);
-  RuinAndRecreate ruins(mesh, flips, 1);
-  const std::vector<Index> part = ruins.spread({5, 9, 5}, 40);
-  ASSERT_EQ(part.size(), 40U);
-  EXPECT_EQ(part[0], 5);
-  EXPECT_EQ(part[1], 9);
-  for (std::size_t i = 2; i < part.size(); ++i) {
-    EXPECT_EQ(std::count(part.begin(), part.end(), part[i]), 1);
-    std::vector<Index> neighbors;
-    appendNeighbors(mesh, part[i], neighbors);
-    EXPECT_TRUE(
-        std::any_of(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(i), [&](Index v) {
-          return std::find(neighbors.begin(), neighbors.end(), v) != neighbors.end();
-        }));
-  }
-  EXPECT_EQ(ruins.spread({5}, 1000).size(), 300U);
-  EXPECT_EQ(ruins.spread({5, 6, 7}, 2).size(), 2U);
-}
-
 }  // namespace
 }  // namespace spherical_param::test

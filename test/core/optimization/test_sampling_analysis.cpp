@@ -21,25 +21,8 @@ TEST(SamplingAnalysis, AlignmentShowsWhetherPointsAreFartherApartWhereTheSurface
   const double spacing = 2.0 * kPi / 40;
   EXPECT_GT(samplingOf(cylinderGrid(40, 25, 2.0 * spacing)).alignment, 0.9);
   EXPECT_LT(samplingOf(cylinderGrid(40, 40, 0.5 * spacing)).alignment, -0.9);
-}
-
-TEST(SamplingAnalysis, EvenAndRandomSamplingsDoNotFollowTheCurvature) {
-  constexpr int n = 1200;
-  std::mt19937_64 random(28);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  const Positions cylinder = pointsAt(n, [&](Index) {
-    const double angle = 2.0 * kPi * uniform(random);
-    return onCircle(angle, 1.0, 4.0 * uniform(random));
-  });
-  EXPECT_NEAR(samplingOf(cylinder).alignment, 0.0, 0.15);
   // A sphere bends in all directions alike: what is measured is chance.
-  const Sampling independent = samplingOf(randomSphere(n, 30));
-  const Sampling even = samplingOf(spiralSphere(n));
-  EXPECT_LT(independent.alignment, 0.15);
-  EXPECT_LT(even.alignment, 0.15);
-  EXPECT_GT(independent.unevenness, 0.3);
-  EXPECT_LT(even.unevenness, 0.3);
-  EXPECT_LT(samplingOf(cubeGrid(12)).unevenness, 0.3);
+  EXPECT_LT(samplingOf(randomSphere(1200, 30)).alignment, 0.15);
 }
 
 TEST(SamplingAnalysis, UnevennessIsTheSpreadOfDistances) {

@@ -53,38 +53,6 @@ TEST(FaceMesh, WithoutAnUnwantedHandleKeepsTheRest) {
   EXPECT_LE(countLost(whole->triangles(), *cut), 4U * 40U);
 }
 
-TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
-  // Two sheets that nearly touch, and false edges between them at a few points.
-  const Positions sphere = spiralSphere(1500);
-  Positions thin = sphere;
-  thin.row(2) *= 0.1;
-  const Graph graph = localDelaunayGraph(thin).graph;
-  const auto right = meshOf(thin, graph);
-  ASSERT_TRUE(right);
-  std::vector<Bridge> bridges;
-  for (Index v = 0; v < 1500; v += 100)
-    for (Index w = 0; w < 1500; ++w) {
-      const double distance = (thin.col(v) - thin.col(w)).norm();
-      if (thin(2, v) * thin(2, w) < 0.0 && thin.col(v).head<2>().norm() < 0.8 && distance < 0.25)
-        bridges.push_back({v, w, distance});
-    }
-  ASSERT_GT(bridges.size(), 20U);
-  const auto mesh = meshOf(thin, withEdges(graph, bridges));
-  ASSERT_TRUE(mesh);
-  EXPECT_TRUE(isSphereOverAll(*mesh, 1500));
-  EXPECT_LT(countLost(*right, *mesh), 450U);  // of 4,494
-}
-
-TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
-  // Two spheres, and a line of points that sticks out of one of them.
-  const Positions points =
-      horizontally(spiralSphere(300), movedTo(2.5, spiralSphere(300)),
-                   pointsAt(5, [](Index i) { return Eigen::Vector3d(0.0, 1.2 + 0.2 * i, 0.0); }));
-  const auto mesh = meshOf(points, localDelaunayGraph(points).graph);
-  ASSERT_TRUE(mesh);
-  EXPECT_TRUE(isSphereOverAll(*mesh, 605));
-}
-
 TEST(FaceMesh, APieceThatFindsNoFreeTriangleIsNodesWithoutFaces) {
   // Eight spheres hang on one vertex of another one, which has triangles for a few.
   constexpr Index n = 30;

