@@ -14,7 +14,8 @@ namespace spherical_param::internal {
 /// number (E. W. Dijkstra, 1959).
 ///
 /// \param lengths infinite before; receives the lengths of the paths.
-/// \param for_each_edge (v, go) calls go(w, length) for the edges from v, of lengths >= 0; go returns
+/// \param for_each_edge (v, go) calls go(w, length) for the edges from v, of lengths >= 0; go
+/// returns
 ///                      whether the path through v is the shortest to w so far.
 template <typename ForEachEdge>
 std::vector<Index> shortestPaths(Index source, Indexed<double>& lengths,
