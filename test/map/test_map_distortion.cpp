@@ -119,5 +119,25 @@ TEST(MapDistortion, TrianglesWithoutAreaAreUnboundedOnTheSphereAndDoNotCountInSp
   EXPECT_EQ(measureMapDistortion(mesh.points, Triangles(3, 0), mesh.sphere).area.mean, 0.0);
 }
 
+TEST(MapDistortion, FlipsAreExact) {
+  // The corners are in a plane through the center, or one unit in the last place beside it.
+  const Vector3d a = Vector3d(0.1, 0.2, 0.7).normalized();
+  const Vector3d b = Vector3d(0.3, -0.4, 0.2).normalized();
+  const Triangles triangle = Eigen::Matrix<Index, 3, 1>(0, 1, 2);
+  const auto flips = [&](const Vector3d& c) {
+    Positions sphere(3, 3);
+    sphere << a, b, c;
+    return measureMapDistortion(test::randomPositions(3, 2), triangle, sphere).flipped_triangles;
+  };
+  EXPECT_EQ(flips(a), 1);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double towards : {-2.0, 2.0}) {
+      Vector3d c = a;
+      c[axis] = std::nextafter(a[axis], towards);
+      // det(a, b, a + d e) = d e . (a x b).
+      EXPECT_EQ(flips(c), (c[axis] - a[axis]) * a.cross(b)[axis] > 0.0 ? 0 : 1);
+    }
+}
+
 }  // namespace
 }  // namespace spherical_param

@@ -310,6 +310,15 @@ TEST_F(SphericalParamReconstruction, TheCallbackCanEndTheWorkAndItsExceptionsPas
   }
 }
 
+TEST_F(SphericalParamReconstruction, TheSearchOfTheUserCanBeEndedInTheMiddle) {
+  Reconstruction reconstruction = reconstructionOf(makeEllipsoid(5000), true);
+  reconstruction.setProgressCallback([](const Progress& progress) {
+    return progress.stage != std::string("neighbors") || progress.fraction == 0.0 ||
+           progress.fraction == 1.0;
+  });
+  expectFailure(reconstruction, "cancelled");
+}
+
 TEST_F(SphericalParamReconstruction, ObjectsInSeveralThreadsAndCopiesAreIndependent) {
   const Cloud::Ptr cloud = makeEllipsoid(500);
   const auto run = [&](std::size_t i) {

@@ -51,6 +51,10 @@ TEST_F(UserSearch, OrganizedNeighborWorksOnDepthImagesAlone) {
   Reconstruction reconstruction = reconstructionOf(image);
   const Triangles by_default = trianglesOf(meshed(reconstruction));
   ASSERT_GT(by_default.cols(), 700);
+  pcl::PolygonMesh mesh;
+  reconstruction.reconstruct(mesh);
+  EXPECT_EQ(mesh.cloud.height, 30U);
+  EXPECT_FALSE(mesh.cloud.is_dense);
   reconstruction.setSearchMethod(Search::Ptr(new pcl::search::OrganizedNeighbor<PointXYZ>()));
   EXPECT_EQ(trianglesOf(meshed(reconstruction)), by_default);
   // Not with the camera of the last image, which PCL keeps.

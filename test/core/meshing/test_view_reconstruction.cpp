@@ -2,6 +2,7 @@
 #include "depth_images.h"
 #include "indexed.h"
 #include "open_shapes.h"
+#include "spherical_param/mesh_measures.h"
 
 namespace spherical_param::test {
 namespace {
@@ -170,6 +171,33 @@ TEST(ViewReconstruction, HasTheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(one.view->place, four.view->place);
   for (std::size_t i = 0; i < one.surfaces.size(); ++i)
     EXPECT_EQ(one.surfaces[i].triangles, four.surfaces[i].triangles);
+}
+
+TEST(ViewReconstruction, OfAnyNoiseNoTrianglesOfAllSurfacesIntersect) {
+  for (const double sigma : {0.001, 0.01, 0.03})
+    for (const char* const parts : {"each", "all"}) {
+      const Positions points = withDepthNoise(depthImage(80, 60, boxBeforeWall), sigma, 2);
+      const Result result =
+          reconstruct(points, given(seenFrom(Eigen::Vector3d::Zero()), "parts", parts));
+      ASSERT_TRUE(result.view);
+      const JoinedMesh all = joined(result);
+      EXPECT_TRUE(findSelfIntersections(all.points, all.triangles).empty()) << sigma << parts;
+    }
+}
+
+TEST(ViewReconstruction, WithNormalsFacesAsTheyDo) {
+  const Positions points = depthImage(60, 40, boxBeforeWall);
+  CloudInfo info;
+  info.normals = points;  // away from the sensor
+  const auto run = [&] { return reconstruct(points, seenFrom(Eigen::Vector3d::Zero()), {}, info); };
+  for (const Surface& surface : run().surfaces) {
+    EXPECT_EQ(surface.faced_by, FacedBy::Normals);
+    EXPECT_GT(areaWeightedNormals(surface.points, surface.triangles).row(2).sum(), 0.0);
+  }
+  for (Index i = 0; i < points.cols(); i += 2)  // no common side
+    info.normals.col(i) *= -1.0;
+  for (const Surface& surface : run().surfaces)
+    EXPECT_EQ(surface.faced_by, FacedBy::Viewpoint);
 }
 
 }  // namespace

@@ -153,5 +153,29 @@ TEST(Coplanarity, PlanesAreFoundExactlyWhateverTheMagnitudes) {
   EXPECT_TRUE(are_coplanar({{m, m, m}, {-m, m, -m}, {m, -m, m}, {-m, -m, -m}}));
 }
 
+// The same in space, on the plane z = x + y: not even differences from the first point are exact.
+TEST(ExactPredicates, OrientationInSpaceIsExactOnNeighbouringDoublesAndWhereProductsUnderflow) {
+  const Vector3d a(0.0, 0.0, 0.0);
+  const Vector3d b(13.0, 1.0, 14.0);
+  const Vector3d c(1.0, 13.0, 14.0);
+  for (int i = 0; i < 16; ++i)
+    for (int j = 0; j < 16; ++j)
+      for (int k = 0; k < 24; ++k) {
+        const Vector3d p(0.5 + std::ldexp(i, -52), 0.25 + std::ldexp(j, -52),
+                         0.75 + std::ldexp(k, -52));
+        ASSERT_EQ(orientation3d(a, b, c, p), signOf(k - i - j)) << i << " " << j << " " << k;
+        ASSERT_EQ(orientation3d(p, b, c, a), signOf(i + j - k)) << i << " " << j << " " << k;
+      }
+  const double least = std::numeric_limits<double>::denorm_min();
+  const Vector3d u(0.1, 0.7, 0.3);
+  const Vector3d v(-0.4, 0.6, -0.2);
+  for (const double x : {-least, 0.0, least}) {
+    const int expected = (x < 0.0) - (x > 0.0);  // of x (0.7 * -0.2 - 0.3 * 0.6)
+    EXPECT_EQ(orientation3d(a, u, v, {x, 0.0, 0.0}), expected);
+    EXPECT_EQ(orientation3d({x, 0.0, 0.0}, u, a, v), expected);
+    EXPECT_EQ(orientation2d({0.0, 0.0}, u.head<2>(), {x, 0.0}), expected);
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::internal

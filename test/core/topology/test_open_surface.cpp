@@ -145,5 +145,20 @@ TEST(OpenSurface, AHandleThatIsCutAndASurfaceOfOneSideAreReported) {
   }
 }
 
+TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
+  // Discs around two points that are a little less apart than the discs are wide.
+  const Eigen::Vector3d a(0.0, 0.0, 1.0);
+  const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
+  for (const double radius : {0.27, 0.29, 0.31}) {
+    const Positions points = pointsWhere(spiralSphere(3000), [&](const Eigen::Vector3d& p) {
+      return std::min((p - a).norm(), (p - b).norm()) > radius;
+    });
+    const Surface result = surfaceOf(points, leftOpen());
+    test::expectSound(result, 0, result.boundary.size());
+    EXPECT_GE(result.boundary.size(), 1U);
+    EXPECT_LE(result.boundary.size(), 2U);
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::test

@@ -71,6 +71,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     const Surface filled =
         mesh(sphereWithHoles(3000, 1, 0.4), watched(given("surface", "closed", "fill", fill)));
     const std::vector<Index>& over = filled.openings.at(0).triangles;
+    EXPECT_FALSE(over.empty());
     EXPECT_EQ(marked(filled, triangle_mark::filled_hole),
               std::set<Index>(over.begin(), over.end()));
   }

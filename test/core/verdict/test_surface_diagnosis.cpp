@@ -1,6 +1,7 @@
 #include "surface_diagnosis.h"
 
 #include "graphs.h"
+#include "handle_shapes.h"
 #include "spherical_param/sphere_triangulation.h"
 
 namespace spherical_param::test {
@@ -109,6 +110,30 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
     EXPECT_EQ((marks & triangle_mark::outside_graph) != 0,
               fractionBeyondTwoSteps(scene.graph.graph, scene.triangles.col(t)) > 0.0);
   }
+}
+
+TEST(SurfaceDiagnosis, OneSideNeedsAMeshThatIsTornWhereItTurnsOver) {
+  const int rings = 160;
+  const int across = 12;
+  const Positions band = moebiusBand(rings, across);
+  Triangles torn(3, 2 * (rings - 1) * (across - 1));
+  Eigen::Index t = 0;
+  for (int i = 0; i + 1 < rings; ++i)
+    for (int j = 0; j + 1 < across; ++j) {
+      const int a = i * across + j;
+      torn.col(t++) << a, a + across, a + 1;
+      torn.col(t++) << a + 1, a + across, a + across + 1;
+    }
+  DiagnosisOptions options;
+  const auto is_one_sided = [&](const Positions& points, const Triangles& triangles) {
+    return diagnose({points, triangles, localDelaunayGraph(points)}, options).is_one_sided;
+  };
+  EXPECT_FALSE(is_one_sided(band, torn));
+  options.may_be_one_sided = true;
+  EXPECT_TRUE(is_one_sided(band, torn));
+  // The two sides of a thin plate are no single sheet.
+  const Positions plate = Eigen::Vector3d(1.0, 1.0, 0.05).asDiagonal() * spiralSphere(1200);
+  EXPECT_FALSE(is_one_sided(plate, triangulateSphere(spiralSphere(1200))));
 }
 
 }  // namespace

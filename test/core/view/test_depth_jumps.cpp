@@ -33,5 +33,27 @@ TEST(DepthJumps, LeaveFalsePointsBetweenSurfacesOut) {
     EXPECT_NE(points.row(2)(t).minCoeff() == 2.0 && points.row(2)(t).maxCoeff() == 3.0, true);
 }
 
+TEST(DepthJumps, SmallGapsWithoutPointsInsideAreFilledAndNotListed) {
+  const Positions points = depthImage(20, 20, [](double x, double) { return 2.0 + 0.1 * x; });
+  const ViewMesh view = triangulateView(points, Eigen::Vector3d::Zero(), {});
+  const Indexed<double> spacing = spacingOf(points, {});
+  const SphereMesh whole = openJumps(points, spacing, view, 50);
+  using Counts = std::pair<std::size_t, std::size_t>;  // boundary loops, listed gaps
+  const auto filled = [&](const std::vector<Index>& gap, const GapLimits& most) {
+    SphereMesh mesh = whole;
+    for (const Index t : gap)
+      mesh.setOpen(t, true);
+    const std::size_t listed = fillGaps(points, spacing, view, most, mesh).size();
+    return Counts(checkTopology(mesh.surfaceTriangles(), 400).boundary_loops, listed);
+  };
+  std::vector<Index> around;  // a point in the middle
+  whole.forEachAround(210, [&](Index t, int) { around.push_back(t); });
+  const std::vector<Index> two{around[0], whole.neighbor(around[0], 0)};
+  EXPECT_EQ(filled(two, {0, 0}), Counts(2, 0));
+  EXPECT_EQ(filled(two, {8, 0}), Counts(1, 0));
+  EXPECT_EQ(filled(around, {8, 0}), Counts(2, 0));  // the point may be far behind
+  EXPECT_EQ(filled(around, {8, 100}), Counts(1, 1));
+}
+
 }  // namespace
 }  // namespace spherical_param::internal
