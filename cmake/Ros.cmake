@@ -27,8 +27,8 @@ function(spherical_param_missing_packages result)
   set(${result} "${missing}" PARENT_SCOPE)
 endfunction()
 
-# A package that has fetched this project builds it as a part of its own. catkin_make builds all packages below one top
-# project, which lists them.
+# Inside another package that has fetched this project, no nodes are built. catkin_make builds all packages below one
+# top project, which lists them: there this project is a package, too.
 set(is_package_of_ros ${PROJECT_IS_TOP_LEVEL})
 get_filename_component(own_path ${PROJECT_SOURCE_DIR} REALPATH)
 foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)

@@ -42,7 +42,8 @@ struct Settings {
 };
 
 OptionTable optionsOf(Settings& settings) {
-  return {numberOption("points", "number of points", settings.scan.points, 4, kMaxScanPoints),
+  return {numberOption("points", "number of points; of a depth image 76800 by default",
+                       settings.scan.points, 4, kMaxScanPoints),
           numberOption("noise",
                        "noise along the normal or the ray, relative to the distance of neighbours",
                        settings.scan.noise, 0, 100),

@@ -41,9 +41,9 @@ enum class PartsMode {
 /// Where a cloud is seen from. If a place sees it as one layer, the directions from there are the
 /// embedding, and the mesh ends where the depth jumps.
 enum class ViewMode {
-  /// The first of these that sees one layer: the viewpoint of the cloud, the origin, far above a
-  /// low
-  /// sheet, a place that is searched for. If none does, and for TopologyMode::Sphere, None.
+  /// The first of these that sees one layer: the viewpoint of the cloud, the origin, far above an
+  /// elevation grid, a place that is searched for, far above a low sheet. If none does, and for
+  /// TopologyMode::Sphere, None.
   Auto,
   None,   ///< no place
   Up,     ///< far above, along z

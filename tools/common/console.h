@@ -52,7 +52,7 @@ public:
   void remark(const std::string& text);
   /// Begins one of several parts of the input.
   void beginPart(const std::string& part);
-  /// What functions that report their progress are to call: theirs is a part of the stage.
+  /// A function to report progress to: its fractions 0 to 1 become from ... to of the stage.
   FileProgress updates(double from = 0.0, double to = 1.0);
   std::function<bool(const Progress&)> progress(double to = 1.0);
   /// Ends the stage. \return its name and time

@@ -111,8 +111,9 @@ bool InputFile::nextLine(std::string_view& line) {
   } while (end == std::string::npos && refill());
   line = std::string_view(buffer_).substr(begin_, end);
   begin_ = std::min(begin_ + line.size() + 1, buffer_.size());
+  // The last line may end without "\n"; behind it, there is none.
   if (line.empty() && end == std::string::npos) {
-    return false;  // the last line need not be ended
+    return false;
   }
   ++line_number_;
   line = line_number_ == 1 ? withoutByteOrderMark(line) : line;

@@ -30,7 +30,7 @@ public:
   std::uint64_t size() const { return size_; }
   /// Bytes that were not taken yet.
   std::uint64_t bytesLeft() const;
-  /// Of the last line that was taken, from 1.
+  /// Number of the last line that was taken, from 1.
   std::size_t lineNumber() const { return line_number_; }
 
   /// The next bytes, without taking them; fewer if the file ends before.

@@ -54,7 +54,7 @@ struct OutputSettings {
 
 OptionTable outputOptions(OutputSettings& settings);
 
-/// Those names of files that a tool makes that are not empty, and that of the report.
+/// The names of the files that a tool makes, without empty ones, and that of the report.
 std::vector<std::string> outputsOf(const OutputSettings& settings,
                                    const std::vector<std::string>& names);
 

@@ -72,7 +72,7 @@ void addNormals(ObjContent& content) {
 
 /// Wavefront OBJ: the vertices, with colours (v x y z r g b), and normals as the faces refer to
 /// them, or in the order of the vertices if no face does. PCL's reader is not used: it drops the
-/// colours and takes the normals in their order, against the faces.
+/// colours and takes the normals in their order, even if the faces say otherwise.
 PointData readObj(InputFile& file, const std::vector<std::string>& /*columns*/) {
   ObjContent content;
   const std::size_t count = countLines(file.path(), "v ");

@@ -416,7 +416,7 @@ std::vector<std::string> namesOfThree(const std::vector<PointColumn>& columns, s
 }
 
 /// Names the columns behind x, y and z if nothing else does: groups of three are colours or
-/// normals. An intensity may stand before, between or behind them, where most groups make sense.
+/// normals. An intensity may stand before, between or behind them, wherever most groups fit.
 void nameFurther(std::vector<PointColumn>& columns) {
   const std::size_t end = columns.size();
   std::map<std::size_t, std::string> best;

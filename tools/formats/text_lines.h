@@ -19,11 +19,15 @@ using Words = std::vector<std::string_view>;
 /// No cloud has more points: indices have 32 bits.
 inline constexpr std::int64_t count_limit = std::int64_t{1} << 30;
 
-/// The words of the next line of a header. \return false at the end of the file
+/// The words of the next line of a header. \return false at the end of the file, or if the header
+/// is too long to be one
 inline bool nextWords(InputFile& file, Words& words) {
   constexpr std::size_t longest_header = std::size_t{1} << 20;
+  const std::string_view next = file.peek(longest_header);
+  const bool is_endless =
+      next.size() == longest_header && next.find('\n') == std::string_view::npos;
   std::string_view line;
-  if (file.size() - file.bytesLeft() > longest_header || !file.nextLine(line)) {
+  if (is_endless || file.size() - file.bytesLeft() > longest_header || !file.nextLine(line)) {
     return false;
   }
   split(line, " \t\r,", words);
@@ -40,10 +44,10 @@ inline std::int64_t requireCount(const InputFile& file, std::string_view word,
   return *count;
 }
 
-/// To be called before anything is read: memory is reserved for as many points as a header claims.
+/// To be called before the data is read: memory is reserved for as many points as a header claims.
 ///
-/// \param needed products of counts overflow any integer in a broken header.
-/// \throw Failure if fewer bytes are left than a header needs.
+/// \param needed number of bytes, as double: products of counts overflow integers in a broken
+/// header. \throw Failure if fewer bytes are left than a header needs.
 inline void requireBytes(const InputFile& file, double needed) {
   if (needed > static_cast<double>(file.bytesLeft())) {
     failContent(file.path(), "it is shorter than its header says");
@@ -64,8 +68,8 @@ inline std::string_view withoutRemark(std::string_view line) {
   return line.substr(0, hash);
 }
 
-/// The number of lines that begin with some text. To set that much memory aside for points takes
-/// less than to let it grow.
+/// The number of lines that begin with some text. To reserve memory for that many points takes less
+/// than to let it grow.
 inline std::size_t countLines(const std::string& path, std::string_view beginning) {
   InputFile file(path);
   std::size_t count = 0;

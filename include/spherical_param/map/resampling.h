@@ -117,7 +117,7 @@ struct GeometryImage {
 };
 
 /// The geometry image of a mesh with the grid of makeGridSphere() for SphereGrid::Octahedral, from
-/// resampleSurface() or untangle().
+/// resampleSurface() or untangle(), whose flipped edges an image does not have.
 ///
 /// \param mesh with such vertices, which may have slid.
 /// \return the image, whose pixels are the vertices.

@@ -237,7 +237,7 @@ private:
   /// Finds the smallest flat neighbourhoods: where noise exceeds the spacing, small ones are as
   /// thick as they are wide.
   void findProbes() {
-    // The largest neighbourhood has this fraction of the points, and this number.
+    // The largest neighbourhood has at most this fraction of the points, and at most this number.
     constexpr double max_fraction = 0.05;
     constexpr Index max_size = 640;
     constexpr Index first_step = 4;

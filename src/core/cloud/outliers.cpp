@@ -202,7 +202,7 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
   DeviatingPoints result;
   Scoring scoring(points, lists, threads);
   Indexed<char> is_outlier(lists.size(), 0);
-  // The last round marks at most this fraction of those marked before.
+  // The last round marks at most this fraction of all marked points.
   constexpr double min_gain = 0.01;
   std::size_t marked = 0;
   for (std::size_t gained = 1;

@@ -98,8 +98,8 @@ private:
   }
 
   /// Of usable meshes the closed one is better, then the one with more handles if these save
-  /// energy. Of others the one with fewer intersections is better, then with more points, then with
-  /// less energy.
+  /// energy, else the one with fewer. Of others the one with fewer intersections is better, then
+  /// with more points, then with less energy.
   bool isBetter(Outcome& mesh, Outcome& than) {
     if (!removesIntersections(options_) && mesh.left_out != than.left_out)
       return mesh.left_out < than.left_out;

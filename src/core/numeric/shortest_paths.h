@@ -15,8 +15,7 @@ namespace spherical_param::internal {
 ///
 /// \param lengths infinite before; receives the lengths of the paths.
 /// \param for_each_edge (v, go) calls go(w, length) for the edges from v, of lengths >= 0; go
-/// returns
-///                      whether the path through v is the shortest to w so far.
+///                      returns whether the path through v is the shortest to w so far.
 template <typename ForEachEdge>
 std::vector<Index> shortestPaths(Index source, Indexed<double>& lengths,
                                  const ForEachEdge& for_each_edge) {

@@ -144,7 +144,7 @@ LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
     consider(t, k, {}, best);
   if (!best.flips.empty())
     return best;
-  // It takes as long as to take out and put back 8 vertices.
+  // This costs as much as taking out and putting back 8 vertices.
   work_ += 8;
   // There are at most 1,900 exact tests unless triangles are degenerate. Then one test takes as
   // long as half a vertex.

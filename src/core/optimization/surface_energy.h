@@ -109,8 +109,8 @@ struct SurfaceEnergy {
   }
 
 private:
-  /// Cost of an edge of an open triangle: too low makes holes, too high folds ears. Half of it
-  /// between two open triangles, or open clouds of several views keep self-intersections.
+  /// Cost of an edge of an open triangle: too low makes holes, too high folds ears. Between two
+  /// open triangles it is half of that; else open clouds of several views keep self-intersections.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
     if (openings->isBoundary(v, w))

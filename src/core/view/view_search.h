@@ -44,8 +44,8 @@ struct FoundView {
   Indexed<double> spacing;  ///< of the points, \see spacingOf
 };
 
-/// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, the source of its
-/// rays, and a place far above a low sheet.
+/// Looks for a place that sees a cloud as one layer: the viewpoint, the origin, far above an
+/// elevation grid, the source of its rays, and far above a low sheet.
 ///
 /// \param points    3 x n, finite, distinct, of an extent about 1.
 /// \param viewpoint in the unit of the points; the origin if it is unknown.

@@ -11,7 +11,7 @@ add_executable(spherical_param_node src/ros/ros2/spherical_param_node.cpp)
 target_include_directories(spherical_param_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(spherical_param_node PRIVATE spherical_param_ros)
 foreach(package IN LISTS ros2_packages)
-  # Again: what cmake/Ros.cmake found ended with its function.
+  # Found again: the variables that cmake/Ros.cmake found are local to its function.
   find_package(${package} REQUIRED)
   target_link_libraries(spherical_param_node PRIVATE ${${package}_TARGETS})
   if(NOT ${package}_TARGETS)
