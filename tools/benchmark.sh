@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Measures: tables and figures of the paper, quality against truth, other methods on the same clouds,
+# Measures: the paper's tables and figures, quality against truth, other methods on the same clouds,
 # time and memory over the number of points. Installs missing packages, builds, and writes tables,
-# pictures and report.md to a folder.
+# plots, pictures and report.md to a folder.
 #
 #   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
 #                      [--only clean|paper|comparison|maps|scaling|gallery]

@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 report=build/benchmark
 rm -rf "$report"
 
-# Every table and picture that the report links to is there.
+# Every table, plot and picture that the report links to is there.
 report_is_whole() {
   local section link links=0
   for section in "The paper" "Quality and peers" "The map to the sphere" "Scaling" "Gallery"; do
