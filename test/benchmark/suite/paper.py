@@ -107,7 +107,7 @@ def figures6_and_7(context):
             report = context.programs.reconstruct(cloud, context.work / "residuals.ply", *options, *limit)[1]
             ends[label] = report["embedding"]
         _plot(context.out / f"{name}.svg", {label: end["residuals"] for label, end in ends.items()}, f"{title}, {scan}")
-        context.report.picture(f"{name}.svg", title)
+        context.report.text(f"![{title}]({name}.svg)")
         *_, iteration, default = ends.values()
         text = text.format(settled=iteration["residual"], centroid=default["centroid_norm"])
         context.report.text(f"**{title}, {scan}.** {' '.join(text.split())}")
