@@ -52,22 +52,16 @@ struct Side {
   bool outgoing;   ///< the triangle runs from the vertex to the other end
 };
 
-/// Examines a vertex and its triangles; degenerate ones do not count.
-void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
-                   Findings& findings) {
-  if (corners.countAt(v) == 0) {
-    findings.unused_vertices.push_back(v);
-    return;
-  }
-  ++findings.vertices;
+/// Examines a vertex with any triangles: degenerate ones do not count.
+void examineSides(const Triangles& triangles, const CornerTable& corners, Index v,
+                  Findings& findings) {
   std::vector<Side> sides;
-  sides.reserve(2 * corners.countAt(v));
   Index count = 0;
   corners.forEachCorner(v, [&](Index t, Index k) {
     if (isDegenerate(triangles.col(t)))
       return;
-    sides.push_back({triangles(internal::nextCorner(k), t), count, true});
-    sides.push_back({triangles(internal::previousCorner(k), t), count, false});
+    sides.push_back({triangles((k + 1) % 3, t), count, true});
+    sides.push_back({triangles((k + 2) % 3, t), count, false});
     ++count;
   });
   // Triangles with a common side belong to the same fan.
@@ -95,6 +89,53 @@ void examineVertex(const Triangles& triangles, const CornerTable& corners, Index
   }
   if (fan_count > 1)
     findings.nonmanifold_vertices.push_back(v);
+}
+
+/// Whether the triangles around a vertex are one closed fan, as in a closed manifold. Also false if
+/// there are too many triangles for this quick test.
+bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v) {
+  constexpr std::size_t most = 32;
+  const std::size_t count = corners.countAt(v);
+  if (count > most)
+    return false;
+  std::array<std::array<Index, 2>, most> sides;  // opposite to v
+  const auto end = sides.begin() + static_cast<std::ptrdiff_t>(count);
+  auto side = sides.begin();
+  bool is_sound = true;
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    is_sound = is_sound && !isDegenerate(triangles.col(t));
+    *side++ = {triangles(internal::nextCorner(k), t), triangles(internal::previousCorner(k), t)};
+  });
+  // Each side ends where another one begins that was not reached before; the last ends at the
+  // first.
+  for (side = sides.begin(); is_sound && side != end; ++side) {
+    auto next = end;  // found without a branch, which would be mispredicted
+    for (auto other = end; other != sides.begin();) {
+      --other;
+      next = (*other)[0] == (*side)[1] ? other : next;
+    }
+    is_sound = side + 1 == end ? next == sides.begin() : next > side && next != end;
+    if (is_sound && side + 1 != end)
+      std::swap(*(side + 1), *next);
+  }
+  return is_sound;
+}
+
+void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
+                   Findings& findings) {
+  if (corners.countAt(v) == 0) {
+    findings.unused_vertices.push_back(v);
+    return;
+  }
+  ++findings.vertices;
+  if (!isClosedFan(triangles, corners, v)) {
+    examineSides(triangles, corners, v, findings);
+    return;
+  }
+  // Each edge counts at the lower of its ends.
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    findings.edges += v < triangles(internal::nextCorner(k), t) ? 1 : 0;
+  });
 }
 
 /// Number of connected components of a set of edges.
