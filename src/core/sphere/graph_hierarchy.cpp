@@ -4,6 +4,7 @@
 #include "progress.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -36,21 +37,50 @@ Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int thread
 }
 
 /// A maximal independent set, in ascending order: takes each node by ascending key, unless a
-/// neighbour was taken before it.
-Indexed<Index> independentSet(const Graph& graph, const Indexed<double>& keys) {
-  Indexed<Index> order = firstIndices(graph.size());
-  std::sort(order.begin(), order.end(),
-            [&](Index i, Index j) { return std::pair(keys[i], i) < std::pair(keys[j], j); });
-  Indexed<char> is_beside(graph.size(), 0);  // a taken node
-  Indexed<Index> taken;
-  for (const Index i : order) {
-    if (is_beside[i] != 0)
-      continue;
-    taken.push_back(i);
+/// neighbour was taken before it. A node can be judged as soon as its neighbours of lower keys are.
+/// So each round leaves fewer nodes, and the set does not depend on the threads.
+Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
+                              const FractionReport& report) {
+  const std::size_t n = graph.size();
+  const Indexed<double> keys = scrambledKeys(graph, seed, threads);
+  reportFraction(report, 0.0);
+  enum State : unsigned char { Open, Out, Taken };
+  Indexed<std::atomic<unsigned char>> states(n);
+  const auto judge = [&](Index i) {
+    if (states[i].load(std::memory_order_relaxed) != Open)
+      return true;
+    bool waits = false;
+    for (const Index j : graph.row(i)) {
+      if (keys[j] > keys[i] || (keys[j] == keys[i] && j > i))
+        continue;
+      const unsigned char state = states[j].load(std::memory_order_relaxed);
+      if (state == Taken) {
+        states[i].store(Out, std::memory_order_relaxed);
+        return true;
+      }
+      waits = waits || state == Open;
+    }
+    if (waits)
+      return false;
+    states[i].store(Taken, std::memory_order_relaxed);
     for (const Index j : graph.row(i))
-      is_beside[j] = 1;
+      states[j].store(Out, std::memory_order_relaxed);
+    return true;
+  };
+  std::vector<Index> waiting = collectBlocks<Index>(
+      n, threads, report, [&](Index begin, Index end, std::vector<Index>& nodes) {
+        for (const Index i : NumberRange(begin, end))
+          if (!judge(i))
+            nodes.push_back(i);
+      });
+  while (!waiting.empty()) {
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(), judge), waiting.end());
+    reportFraction(report, 0.0);
   }
-  std::sort(taken.begin(), taken.end());
+  Indexed<Index> taken;
+  for (const Index i : graph.nodes())
+    if (states[i].load(std::memory_order_relaxed) == Taken)
+      taken.push_back(i);
   return taken;
 }
 
@@ -61,9 +91,9 @@ struct Aggregates {
 
   /// Gives a node the seed of a neighbour if the path through it is shorter; ties go to the lower
   /// seed. \return whether the node has changed
-  bool join(Index node, Index neighbor, double length) {
-    const double distance = distances[neighbor] + length;
-    const Index seed = of_node[neighbor];
+  bool join(Index node, const Aggregates& of, Index neighbor, double length) {
+    const double distance = of.distances[neighbor] + length;
+    const Index seed = of.of_node[neighbor];
     if (!(distance < distances[node] || (distance == distances[node] && seed < of_node[node])))
       return false;
     distances[node] = distance;
@@ -72,19 +102,35 @@ struct Aggregates {
   }
 };
 
-/// Shortest paths from all seeds at once. A simple queue is fast, since no node is far from a seed.
-Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds) {
-  Aggregates cells{Indexed<Index>(graph.size(), -1),
-                   Indexed<double>(graph.size(), std::numeric_limits<double>::infinity())};
+/// Shortest paths from all seeds at once. First come the neighbours of seeds, then all nodes, in
+/// parallel. No node is far from a seed, so few change after that.
+Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int threads,
+                         const FractionReport& report) {
+  const std::size_t n = graph.size();
+  Aggregates near{Indexed<Index>(n, -1),
+                  Indexed<double>(n, std::numeric_limits<double>::infinity())};
   for (const Index s : indicesOf(seeds)) {
-    cells.of_node[seeds[s]] = s;
-    cells.distances[seeds[s]] = 0.0;
+    near.of_node[seeds[s]] = s;
+    near.distances[seeds[s]] = 0.0;
+    for (const std::size_t e : graph.entries(seeds[s]))
+      near.join(graph.neighbors[e], near, seeds[s], graph.lengths[e]);
   }
-  std::vector<Index> queue = seeds;
+  reportFraction(report, 0.0);
+  Aggregates cells = near;
+  std::vector<Index> queue = collectBlocks<Index>(
+      n, threads, report, [&](Index begin, Index end, std::vector<Index>& changed) {
+        for (const Index i : NumberRange(begin, end)) {
+          bool changes = false;
+          for (const std::size_t e : graph.entries(i))
+            changes = cells.join(i, near, graph.neighbors[e], graph.lengths[e]) || changes;
+          if (changes)
+            changed.push_back(i);
+        }
+      });
   for (std::size_t head = 0; head < queue.size(); ++head)
     for (const std::size_t e : graph.entries(queue[head])) {
       const Index i = graph.neighbors[e];
-      if (cells.join(i, queue[head], graph.lengths[e]))
+      if (cells.join(i, cells, queue[head], graph.lengths[e]))
         queue.push_back(i);
     }
   return cells;
@@ -181,13 +227,12 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
     const int threads = threadCount(execution.threads, finest->size());
-    const Indexed<Index> seeds = independentSet(*finest, scrambledKeys(*finest, seed, threads));
-    reportFraction(report, 0.0);
+    const Indexed<Index> seeds = independentSet(*finest, seed, threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere. If levels kept more than half of the
     // nodes, a hub could have as many levels as neighbours.
     if (seeds.size() < 4 || 2 * seeds.size() > finest->size())
       break;
-    const Aggregates cells = geodesicCells(*finest, seeds);
+    const Aggregates cells = geodesicCells(*finest, seeds, threads, report);
     HierarchyLevel& level = hierarchy.levels.emplace_back();
     level.graph = coarseGraph(*finest, cells, seeds.size(), threads, report);
     interpolation(*finest, cells, seeds.size(), threads, report).swap(level.prolongation);
