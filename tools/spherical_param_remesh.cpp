@@ -97,9 +97,8 @@ void parse(const CommandLine& command_line, Settings& settings) {
   if (!settings.sphere.empty()) {
     requireFormat(settings.sphere, FileUse::WriteMesh);
   }
-  if (!settings.image.empty() && extensionOf(settings.image) != ".png") {
-    throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
-                     "give a name that does");
+  if (!settings.image.empty()) {
+    requirePngName(settings.image);
   }
   if (settings.grid != SphereGrid::Octahedral) {
     command_line.refuse({"image"}, "-grid icosahedral", "-grid octahedral");
@@ -207,8 +206,8 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
 }
 
 Json imageToJson(const GeometryImage& image) {
-  const ImageBox box = boxOf(image);
-  return {{"side", image.side}, {"low", box.low}, {"high", box.high}};
+  const Eigen::AlignedBox3d box = boxOf(image);
+  return {{"side", image.side}, {"low", toJson(box.min())}, {"high", toJson(box.max())}};
 }
 
 std::vector<Finding> findingsOf(const Settings& settings, const MappedCloud& mapped,

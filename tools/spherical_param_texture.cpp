@@ -116,9 +116,8 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   };
   if (settings.image.empty()) {
     settings.image = beside(".png");
-  } else if (extensionOf(settings.image) != ".png") {
-    throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
-                     "give a name that does");
+  } else {
+    requirePngName(settings.image);
   }
   checkName(settings, seenFrom(settings.output, settings.image));
   if (settings.extension() == ".obj") {

@@ -1,6 +1,8 @@
 #include "common/png_image.h"
 
 #include "common/errors.h"
+#include "common/file_formats.h"
+#include "common/text.h"
 
 #include <png.h>
 
@@ -33,28 +35,31 @@ std::string encode(int width, int height, png_uint_32 format, const void* pixels
 
 }  // namespace
 
+void requirePngName(const std::string& path) {
+  if (extensionOf(path) != ".png") {
+    throw UsageError("option -image: " + inQuotes(path) + " does not end in .png",
+                     "give a name that does");
+  }
+}
+
 std::string encodePng(const TextureImage& image) {
   return encode(image.width, image.height, PNG_FORMAT_RGB, image.pixels.data(),
                 "give -size a smaller number");
 }
 
-ImageBox boxOf(const GeometryImage& image) {
-  ImageBox box;
-  Eigen::Vector3d::Map(box.low.data()) = image.positions.rowwise().minCoeff();
-  Eigen::Vector3d::Map(box.high.data()) = image.positions.rowwise().maxCoeff();
-  return box;
+Eigen::AlignedBox3d boxOf(const GeometryImage& image) {
+  return {image.positions.rowwise().minCoeff(), image.positions.rowwise().maxCoeff()};
 }
 
 std::string encodePng(const GeometryImage& image) {
-  const ImageBox box = boxOf(image);
+  const Eigen::AlignedBox3d box = boxOf(image);
+  const Eigen::Vector3d sizes = box.sizes();
   std::vector<std::uint16_t> pixels;
   pixels.reserve(static_cast<std::size_t>(image.positions.size()));
   for (Eigen::Index i = 0; i < image.positions.cols(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double size = box.high[axis] - box.low[axis];
+    for (int axis = 0; axis < 3; ++axis) {
       const double fraction =
-          size > 0.0 ? (image.positions(static_cast<Eigen::Index>(axis), i) - box.low[axis]) / size
-                     : 0.0;
+          sizes[axis] > 0.0 ? (image.positions(axis, i) - box.min()[axis]) / sizes[axis] : 0.0;
       pixels.push_back(static_cast<std::uint16_t>(std::lround(65535.0 * fraction)));
     }
   return encode(image.side, image.side, PNG_FORMAT_LINEAR_RGB, pixels.data(),
