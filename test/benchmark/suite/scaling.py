@@ -3,7 +3,10 @@
 import math
 import statistics
 
+from .machine import memory
 from .programs import stage_seconds
+
+BYTES_A_POINT = 1500  # more than the product takes: what does not fit is not tried
 
 SCALING = [("points", "points"), ("seconds", "time [s]", 2), ("throughput", "points a second", 0),
            ("unit", "time / (n log2 n) [ns]", 0), ("bytes", "peak memory [bytes a point]", 0),
@@ -30,6 +33,9 @@ def section(context):
     rows = []
     sizes = context.choose([1000, 10000], [1000, 10000, 100000, 134345, 1000000])
     for n in sizes + ([10000000] if context.large else []):
+        if n * BYTES_A_POINT > memory("MemAvailable"):
+            context.say(f"scaling: {n:,} points do not fit the memory")
+            continue
         context.say(f"scaling: {n:,} points")
         rows.append(_measure(context, n))
     context.report.text("""
