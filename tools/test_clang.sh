@@ -16,9 +16,9 @@ quick_option "$@"
 release_only='*Large*:EveryFinding.*:Consolidation.NoiseIs*:MeshOptimization.RepairsEnd*'
 release_only+=':Contract.ThreadsAndReports*:RotationSearch.NoOther*:MeshCleaning.RandomPoints*'
 release_only+=':Judgement.WhatIsNotUsable*:SelfIntersection.ASearchUpTo*'
-# Eleven of the others, which take half of their time.
+# Some of the others, which take half of their time.
 slow='Contract.*Report*:Reconstruct.NastySets*:Concurrency.*:Reconstruct.Mirrored*:Contract.SurfacesDoNotDepend*'
-slow+=':Selection.EverySurface*:Judgement.SurfacesThat*'
+slow+=':Selection.EverySurface*'
 
 # The sources of library and tools as the clang build compiles them: several together, so that the
 # headers of others are read once for all. So the analyzer must look into included files, too. It has

@@ -96,9 +96,9 @@ inline void addReconstructions(const Add& add) {
       return numbersOf(reconstruct(in.*cloud, with(options, e)));
     });
   };
-  add_of("smoothed", &Inputs::rough, given(watched(), "smoothing", 2));
+  add_of("smoothed", &Inputs::rough, given(withDetails(), "smoothing", 2));
   add_of("converged", &Inputs::cloud, given("tolerance", 1e-7));
-  const Options published = given(watched(paper()), "max_iterations", 5);
+  const Options published = given(withDetails(paper()), "max_iterations", 5);
   for (const char* const weights : {"uniform", "inverse", "adaptive"})
     add_of("as published", &Inputs::rough, given(published, "weights", weights));
   add_of("open", &Inputs::holed, given("surface", "open"));

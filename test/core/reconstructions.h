@@ -71,8 +71,8 @@ inline Options quick(Options options = {}) {
   return options;
 }
 
-/// With the details.
-inline Options watched(Options options = {}) {
+/// The options, with the details.
+inline Options withDetails(Options options = {}) {
   options.details = true;
   return options;
 }

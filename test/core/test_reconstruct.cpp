@@ -107,7 +107,7 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutward) {
   const Options radial = given(paper(), "max_iterations", 0);
   for (const Positions& points : {ellipsoid(600), mirrored})
     for (const Options& options : {Options(), paper(), radial, collapsing}) {
-      const Surface result = mesh(points, watched(options));
+      const Surface result = mesh(points, withDetails(options));
       expectGuarantees(points, result);
       EXPECT_GT(result.measures.volume, 1.0);
       EXPECT_GT(volumeOf(result.sphere, result.triangles), 3.5);

@@ -100,7 +100,7 @@ TEST(Attempts, WhereTheFacesCloseUpThereIsASphereOnRequestAlone) {
     }
     EXPECT_EQ(surfaceOf(points, sphere()).sphere.cols(), points.cols());
   }
-  const Result torus = reconstruct(torusCloud(60, 24), watched());
+  const Result torus = reconstruct(torusCloud(60, 24), withDetails());
   expectSoundWithHandles(torus.surface(), 1);
   EXPECT_FALSE(hasEmbedding(torus));
   EXPECT_EQ(torus.surface().sphere.cols(), 0);
@@ -159,7 +159,7 @@ TEST(Attempts, ToriThatTouchAndOneSidedSurfacesHaveFindings) {
 
 TEST(Attempts, WorksWithTheOtherOptions) {
   const Positions torus = torusCloud(60, 24);
-  const Surface smooth = surfaceOf(torus, watched(given("smoothing", 3)));
+  const Surface smooth = surfaceOf(torus, withDetails(given("smoothing", 3)));
   EXPECT_EQ(smooth.topology.genus, 1);
   EXPECT_NE(smooth.points, torus);
   EXPECT_TRUE(smooth.vertex_residuals.empty());

@@ -73,8 +73,8 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
   const Positions points = sphereWithHoles(3000, 2, 0.4);
-  const Surface closed = surfaceOf(points, watched(sphere()));
-  const Surface open = surfaceOf(points, watched(leftOpen()));
+  const Surface closed = surfaceOf(points, withDetails(sphere()));
+  const Surface open = surfaceOf(points, withDetails(leftOpen()));
   // In a closed mesh, openings have the same room on the sphere.
   EXPECT_EQ(closed.sphere, open.sphere);
   EXPECT_TRUE(closed.isClosed());

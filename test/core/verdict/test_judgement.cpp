@@ -42,7 +42,7 @@ TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
 
 TEST(Judgement, TheMeanOfTheResidualsOfVerticesIsThatOfTheEmbedding) {
   for (const Options& options : {sphere(), quick(given(paper(), "max_iterations", 3))}) {
-    const Surface result = mesh(ellipsoid(600), watched(options));
+    const Surface result = mesh(ellipsoid(600), withDetails(options));
     ASSERT_EQ(result.vertex_residuals.size(), 600U);
     const double sum =
         std::accumulate(result.vertex_residuals.begin(), result.vertex_residuals.end(), 0.0);
@@ -61,7 +61,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     return triangles;
   };
   const Surface tangled =
-      mesh(noisySphere(300, 1.0), watched(quick(given("consolidation", "none"))));
+      mesh(noisySphere(300, 1.0), withDetails(quick(given("consolidation", "none"))));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
@@ -69,16 +69,16 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
   EXPECT_EQ(marked(tangled, triangle_mark::self_intersection), intersecting);
   for (const char* fill : {"flat", "smooth"}) {
     const Surface filled =
-        mesh(sphereWithHoles(3000, 1, 0.4), watched(given("surface", "closed", "fill", fill)));
+        mesh(sphereWithHoles(3000, 1, 0.4), withDetails(given("surface", "closed", "fill", fill)));
     const std::vector<Index>& over = filled.openings.at(0).triangles;
     EXPECT_FALSE(over.empty());
     EXPECT_EQ(marked(filled, triangle_mark::filled_hole),
               std::set<Index>(over.begin(), over.end()));
   }
-  const Surface uncertain = surfaceOf(sphereWithHoles(3000, 1, 0.15), watched());
+  const Surface uncertain = surfaceOf(sphereWithHoles(3000, 1, 0.15), withDetails());
   EXPECT_TRUE(uncertain.openings.at(0).is_filled);
   EXPECT_TRUE(marked(uncertain, triangle_mark::filled_hole).empty());
-  EXPECT_TRUE(marked(mesh(ellipsoid(300), watched()), 0xff).empty());
+  EXPECT_TRUE(marked(mesh(ellipsoid(300), withDetails()), 0xff).empty());
 }
 
 TEST(Judgement, SmoothingMovesThePointsAlone) {
