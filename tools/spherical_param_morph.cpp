@@ -309,7 +309,7 @@ Json report(Settings settings, const std::array<MappedCloud, 2>& clouds, const M
     of_side["findings"] = toJson(clouds[side].cloud.result.findings);
   }
   json["stages"] = toJson(morph.stages);
-  json["peak_memory"] = peakMemoryToJson();
+  json["peak_memory_bytes"] = peakMemoryToJson();
   return json;
 }
 

@@ -79,6 +79,7 @@ class EveryTool(ToolTest):
                 self.check_entries(report["options"], {"seed": 7, "threads": 2, "tolerance": None})
                 self.assertEqual(set(options_of(tool)) - set(report["options"]), set())
                 self.assertIs(type(report["version"]), str)
+                self.assertIn("peak_memory_bytes", report)
                 self.assertGreaterEqual(min(stage["seconds"] for stage in report["stages"]), 0)
                 self.assertIn(TOOLS[tool][2], " ".join(stage["name"] for stage in report["stages"]))
                 if tool == "reconstruction":
