@@ -54,6 +54,7 @@ class Documentation(unittest.TestCase):
         for function in overloads:
             names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
             self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
+            self.assertLessEqual(set(re.findall(r"Results?", ast.unparse(function.returns))), set(sp.__all__))
             types = {argument.arg: ast.unparse(argument.annotation) for argument in function.args.kwonlyargs}
             for row in _core.option_table():
                 if row["name"] not in ("parts", "topology"):  # by which the overloads differ

@@ -23,7 +23,7 @@ from ._figures import Finding, LeftOut, Surface, View
 from ._files import MeshExport, vertex_normals
 from ._progress import Progress, listening
 
-__all__ = ["Result", "TriangleMark"]
+__all__ = ["Result", "Results", "TriangleMark"]
 
 
 class TriangleMark(IntFlag):
