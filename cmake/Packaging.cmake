@@ -88,7 +88,7 @@ mesh through every point, with the handles of the object, by maps to the sphere
 (M. Zwicker and C. Gotsman, 2004).")
 endmacro()
 
-set(abi ${PROJECT_VERSION_MAJOR})
+set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(core libspherical-param-core${abi})
 set(pcl libpcl-spherical-param${abi})
 debian_package(${core} SECTION libs COMPONENT core ABOUT "core and map libraries")
