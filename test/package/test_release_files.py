@@ -2,6 +2,7 @@
 """The files by which others find and install the project parse, and agree in the version, its date and the tests."""
 
 import json
+import os
 import pathlib
 import re
 import unittest
@@ -33,6 +34,10 @@ class ReleaseFiles(unittest.TestCase):
         port = json.loads((ROOT / "packaging/vcpkg/pcl-spherical-param/vcpkg.json").read_text())
         package = xml.etree.ElementTree.parse(ROOT / "package.xml")
         self.assertEqual([citation["version"], port["version"], package.findtext("version")], [version] * 3)
+        for path in ("pyproject.toml", "setup.py", "packaging/conan/conanfile.py"):  # they read CMakeLists.txt
+            self.assertFalse(version in (ROOT / path).read_text(), path)
+        for library in ("spherical-param-core", "pcl-spherical-param"):
+            self.assertEqual(found(rf"`lib{library}([0-9.]+)`", "doc/guide.md"), version.rpartition(".")[0])
         self.assertEqual(citation["date-released"], found(rf"^## \[{re.escape(version)}\] - (\S+)$", "CHANGELOG.md"))
 
     def test_each_script_of_tests_is_run_by_a_workflow(self):
@@ -40,11 +45,29 @@ class ReleaseFiles(unittest.TestCase):
         run = set(re.findall(r"\w+", runs_all.replace("--quick", "")))
         scripts = {path.stem for path in (ROOT / "tools").glob("test*.sh")} - {"test_all"} | {"stress"}
         self.assertEqual(run, scripts)
-        for workflow, script in (("weekly", "inputs.script || 'tools/test_all.sh'"), ("ci", "script: .ci/run"),
-                                 ("release", "uses: ./.github/workflows/weekly.yml")):  # fmt: skip
-            text = (ROOT / f".github/workflows/{workflow}.yml").read_text()
-            self.assertIn(script, text)
-        self.assertIn("tests", yaml.safe_load(text)["jobs"]["release"]["needs"])
+        jobs = {name: self.workflow(name)["jobs"] for name in ("ci", "release", "weekly")}
+        weekly = {"uses": "./.github/workflows/weekly.yml"}
+        self.assertEqual(jobs["ci"]["debian"], {**weekly, "with": {"script": ".ci/run"}})
+        self.assertEqual(jobs["release"]["tests"], weekly)
+        self.assertIn("tests", jobs["release"]["release"]["needs"])
+        test = next(step["run"] for step in jobs["weekly"]["debian"]["steps"] if step.get("name") == "Test")
+        self.assertEqual(test.splitlines()[1:], ["${{ inputs.script || 'tools/test_all.sh' }}"])
+        others = [job for name, job in jobs["ci"].items() if name != "debian"]
+        self.assertFalse([job for job in others if "debian" in str(job.get("container"))])
+
+    def test_workflows_run_scripts_that_exist_and_the_commands_of_the_guide(self):
+        for path in (ROOT / ".github/workflows").glob("*.yml"):
+            scripts = set(re.findall(r"(?:tools|\.ci)/[\w./]*\w", path.read_text()))
+            for script in scripts - {"tools/all"}:  # a target of CMake
+                self.assertTrue(os.access(ROOT / script, os.X_OK), f"{path.name}: {script}")
+        steps = self.workflow("release")["jobs"]["debian"]["steps"]
+        made = next(step["run"] for step in steps if step.get("name") == "Packages").splitlines()
+        commands = "\n".join(made[1:])
+        self.assertTrue(f"```sh\n{commands}\n```" in (ROOT / "doc/guide.md").read_text(), commands)
+
+    @staticmethod
+    def workflow(name):
+        return yaml.safe_load((ROOT / f".github/workflows/{name}.yml").read_text())
 
 
 if __name__ == "__main__":
