@@ -208,8 +208,8 @@ Json report(Settings settings, const MappedCloud& mapped, const Output& output) 
   json["texture"] = output.is_checkerboard ? "checkerboard" : "colors";
   json["image"] = {{"width", output.image.width},
                    {"height", output.image.height},
-                   {"covered_share", output.fraction(1)},
-                   {"gutter_share", output.fraction(2)}};
+                   {"covered_fraction", output.fraction(1)},
+                   {"gutter_fraction", output.fraction(2)}};
   json["cut_vertices"] = cutVertices(mapped, output);
   json["texture_coordinates"] = output.atlas.coordinates.cols();
   json["triangles"] = output.atlas.triangles.cols();

@@ -165,8 +165,8 @@ class TextureTool(ToolTest):
             "cut_vertices": len(mesh.points) - 700, "texture_coordinates": len(mesh.coordinates),
         })  # fmt: skip
         # 3 of 50 pixels at both sides of each face.
-        self.assertAlmostEqual(report["image"]["covered_share"], 0.88 * 0.88, delta=0.03)
-        self.assertGreater(report["image"]["gutter_share"], 0.15)
+        self.assertAlmostEqual(report["image"]["covered_fraction"], 0.88 * 0.88, delta=0.03)
+        self.assertGreater(report["image"]["gutter_fraction"], 0.15)
 
     def test_without_colours_there_is_a_checkerboard_and_that_is_said(self):
         plain = report_of("texture", "plain.ply", "plain.glb", "-size", 64)
