@@ -83,9 +83,9 @@ macro(debian_package name)
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
   endif()
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "meshing by spherical parameterisation - ${arg_ABOUT}
-The library meshes the point cloud of an object into a closed, manifold triangle
-mesh through every point, with the handles of the object, by maps to the sphere
-(M. Zwicker and C. Gotsman, 2004).")
+Point clouds of objects, and of what one sensor saw from one place, become
+triangle meshes through their points, with the parts, openings and handles that
+they show (after M. Zwicker and C. Gotsman, 2004).")
 endmacro()
 
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
