@@ -68,7 +68,7 @@ def beside(path, *pictures):
 
 
 def demo():
-    cloud = scan("desk", 76800, "-noise", 0.3)
+    cloud = scan("desk", 76800)
     run("reconstruction", cloud, "desk_mesh.ply")
     draw("desk.png", "1080x400", [(cloud, "what a depth camera sees"), ("desk_mesh.ply", "its mesh")],
          f"--view={CAMERA}")  # fmt: skip
@@ -156,7 +156,7 @@ def symptoms():
 
 
 def depth_camera():
-    cloud = scan("desk", 76800, "-noise", 0.3)
+    cloud = scan("desk", 76800)
     run("reconstruction", cloud, "mesh.ply")
     draw(PICTURES / "depth_camera.png", "1260x400", [(cloud, "depth image"), ("mesh.ply", "its mesh as the camera sees it"),
          ("mesh.ply", "from above")], f"--view={CAMERA}", f"--view={CAMERA}", "--view=20,-55")  # fmt: skip

@@ -1,7 +1,6 @@
 #include "scan_shapes.h"
 
 #include "neighbor_search.h"
-#include "parallel.h"
 #include "sample_elimination.h"
 #include "spherical_param/errors.h"
 
@@ -21,122 +20,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-Distance ball(const Vector3d& center, double radius) {
-  return [=](const Vector3d& p) { return (p - center).norm() - radius; };
-}
-
-/// Convex hull of two spheres, neither of which contains the other. It is the union of spheres
-/// along the axis. The one nearest to p has its centre before the foot of p, by `shift` times the
-/// distance of p from the axis.
-Distance cone(const Vector3d& a, double radius_a, const Vector3d& b, double radius_b) {
-  const double length = (b - a).norm();
-  const double slope = (radius_a - radius_b) / length;
-  const double shift = slope / std::sqrt(1.0 - slope * slope);
-  return [=, axis = Vector3d((b - a) / length)](const Vector3d& p) {
-    const Vector3d offset = p - a;
-    const double along = offset.dot(axis);
-    const double across = std::sqrt(std::max(0.0, offset.squaredNorm() - along * along));
-    const double s = std::clamp(along - across * shift, 0.0, length);
-    return (offset - s * axis).norm() - (radius_a - s * slope);
-  };
-}
-
-/// Tube with round ends around an arc of a circle, which extends `reach` [rad] to both sides of its
-/// middle. Directions are of any length, at right angles.
-Distance arc(const Vector3d& center, const Vector3d& middle, const Vector3d& side, double radius,
-             double tube, double reach) {
-  return [=, x = middle.normalized().eval(), y = side.normalized().eval()](const Vector3d& p) {
-    const Vector3d offset = p - center;
-    const double angle = std::clamp(std::atan2(offset.dot(y), offset.dot(x)), -reach, reach);
-    return (offset - radius * (std::cos(angle) * x + std::sin(angle) * y)).norm() - tube;
-  };
-}
-
-/// Ellipsoid whose first axis has the direction `forward`, in the plane y = 0. First order estimate
-/// of the distance, k0 (k0 - 1) / k1 with k0 = |x / r| and k1 = |x / r^2| (Quilez, "Ellipsoid -
-/// SDF", iquilezles.org/articles/ellipsoids).
-Distance ellipsoid(const Vector3d& center, const Vector3d& radii,
-                   const Vector3d& forward = {1.0, 0.0, 0.0}) {
-  Eigen::Matrix3d axes;
-  axes << forward.normalized(), Vector3d::UnitY(), forward.normalized().cross(Vector3d::UnitY());
-  return [=](const Vector3d& p) {
-    const Vector3d x = (axes.transpose() * (p - center)).cwiseQuotient(radii);
-    const double k0 = x.norm();
-    const double k1 = x.cwiseQuotient(radii).norm();
-    return k1 > 0.0 ? k0 * (k0 - 1.0) / k1 : -radii.minCoeff();
-  };
-}
-
-/// Box with edges parallel to the coordinate axes, rounded by less than each of `half_size`.
-Distance box(const Vector3d& center, const Vector3d& half_size, double rounding) {
-  return [=](const Vector3d& p) {
-    const Vector3d outside = ((p - center).cwiseAbs() - half_size).array() + rounding;
-    return outside.cwiseMax(0.0).norm() + std::min(0.0, outside.maxCoeff()) - rounding;
-  };
-}
-
-/// Height of regular bumps within a ball: waves along three oblique axes, multiplied with each
-/// other and with (1 - d^2 / R^2)^2. The wave is 16 t^2 (1 - t)^2, t the fractional part of x.
-Distance bumps(const Vector3d& center, double radius, double period, double amplitude) {
-  // Orthogonal axes, none of them close to an axis of a shape's symmetry.
-  Eigen::Matrix3d axes;
-  axes << 2.0, 1.0, 2.0, -2.0, 2.0, 1.0, -1.0, -2.0, 2.0;
-  return [=](const Vector3d& p) {
-    const Vector3d offset = p - center;
-    const double fade = std::max(0.0, 1.0 - offset.squaredNorm() / (radius * radius));
-    const Eigen::Array3d x = axes * offset / (3.0 * period);
-    const Eigen::Array3d t = x - x.floor();
-    return amplitude * fade * fade * (16.0 * (t * (1.0 - t)).square()).prod();
-  };
-}
-
-constexpr double carved = -1.0;
-
-struct Part {
-  Distance distance;
-  double blend = 0.0;  ///< size of the fillet, about
-  double sign = 1.0;   ///< or carved
-};
-
-/// Joins the parts of the middle one after the other, then those of either side, given for y > 0.
-/// The joint is the quadratic smooth minimum (Quilez, "Smooth minimum",
-/// iquilezles.org/articles/smin), which equals the minimum where the values differ by `blend`.
-Distance body(const std::vector<Part>& middle, const std::vector<Part>& sides = {}) {
-  return [=](const Vector3d& p) {
-    double result = std::numeric_limits<double>::max();
-    const auto join = [&](const std::vector<Part>& parts, const Vector3d& at) {
-      for (const auto& [distance, blend, sign] : parts) {
-        const double a = sign * result;
-        const double b = distance(at);
-        const double overlap = blend - std::abs(a - b);
-        const double fillet = overlap > 0.0 ? 0.25 * overlap * overlap / blend : 0.0;
-        result = sign * (std::min(a, b) - fillet);
-      }
-    };
-    join(middle, p);
-    join(sides, {p.x(), -p.y(), p.z()});
-    join(sides, p);
-    return result;
-  };
-}
-
-const Shape& findShape(const std::string& name) {
-  for (const Shape& shape : allShapes())
-    if (shape.name == name)
-      return shape;
-  throw InvalidInput("there is no shape '" + name + "'; take one of allShapes()");
-}
-
-Vector3d gradientAt(const Vector3d& p, const Distance& distance) {
-  constexpr double step = 1e-7;  // errors of rounding and of curvature are below 1e-8
-  Vector3d gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d move = step * Vector3d::Unit(axis);
-    gradient[axis] = (distance(p + move) - distance(p - move)) / (2.0 * step);
-  }
-  return gradient;
-}
-
 /// The point of the surface near a point: Newton's method along the gradient at the start.
 Vector3d project(Vector3d p, const Distance& distance) {
   const Vector3d gradient = gradientAt(p, distance);
@@ -146,26 +29,6 @@ Vector3d project(Vector3d p, const Distance& distance) {
     value = distance(p);
   }
   return p;
-}
-
-/// A shape of another size at another place, turned about z [rad].
-Distance placed(const std::string& name, const Vector3d& center, double size, double turn) {
-  const Eigen::Matrix3d axes = Eigen::AngleAxisd(-turn, Vector3d::UnitZ()).toRotationMatrix();
-  return [=, &distance = findShape(name).distance](const Vector3d& p) {
-    const Vector3d offset = (p - center) / size;
-    const double away = offset.norm() - 0.8;  // no shape is larger
-    return size * (away > 0.2 ? away : distance(axes * offset));
-  };
-}
-
-/// Calls work(i) for each i in [0, count), on several threads.
-void forEach(std::size_t count, const std::function<void(Index)>& work) {
-  internal::forEachIndex(count, internal::threadCount(0, count), {}, work);
-}
-
-/// Uniform in [0, 1). The distributions of the standard library differ between implementations.
-double uniform(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
 }  // namespace
@@ -270,31 +133,11 @@ const std::vector<Shape>& allShapes() {
   return shapes;
 }
 
-const Shape& deskScene() {
-  // Of the room: z up, x away from the camera, the top of the desk at z = 0.
-  const Distance room =
-      [=,
-       objects = body({{box({0.0, 0.0, -0.02}, {0.40, 0.52, 0.02}, 0.005)},
-                       {placed("head", {0.12, -0.22, 0.19}, 0.38, 2.8)},
-                       {placed("animal", {-0.12, 0.13, 0.157}, 0.35, 4.0)},
-                       {box({0.10, 0.30, 0.02}, {0.11, 0.15, 0.02}, 0.004)},
-                       {box({0.12, 0.28, 0.055}, {0.09, 0.13, 0.015}, 0.004)},
-                       {ball({0.12, 0.26, 0.14}, 0.07)}}),
-       mug = body(
-           {{cone({-0.22, -0.18, 0.04}, 0.04, {-0.22, -0.18, 0.1}, 0.039)},
-            {arc({-0.22, -0.22, 0.07}, -Vector3d::UnitY(), Vector3d::UnitZ(), 0.027, 0.007, 1.7)},
-            {cone({-0.22, -0.18, 0.045}, 0.034, {-0.22, -0.18, 0.3}, 0.033), 0.0, carved}})](
-          const Vector3d& p) {
-        return std::min({objects(p), mug(p), 0.52 - p.x(), 0.72 + p.z()});
-      };
-  const Vector3d camera(-0.70, 0.08, 0.50);
-  Eigen::Matrix3d axes;  // of the camera, in the room
-  axes.col(2) = (Vector3d(0.06, 0.02, 0.06) - camera).normalized();
-  axes.col(0) = axes.col(2).cross(Vector3d::UnitZ()).normalized();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  static const Shape scene = {"desk", "what a depth camera sees of a desk, in its frame",
-                              [=](const Vector3d& p) { return room(camera + axes * p); }};
-  return scene;
+const Shape& findShape(const std::string& name) {
+  for (const Shape& shape : allShapes())
+    if (shape.name == name)
+      return shape;
+  throw InvalidInput("there is no shape '" + name + "'; take one of allShapes()");
 }
 
 // Surface nets (Gibson 1998, "Constrained elastic surface nets"): a vertex in each cube of a
@@ -389,41 +232,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
   return mesh;
 }
 
-namespace {
-
-/// One point for each ray of a depth camera. Sphere tracing (J. C. Hart, 1996).
-Scan depthImage(const Distance& distance, const ScanOptions& options) {
-  constexpr double focal_length = 0.95;  // of widths
-  constexpr int most_steps = 2000;
-  const auto count = static_cast<double>(options.points);
-  const double width = std::max(2.0, std::round(std::sqrt(count * 4.0 / 3.0)));
-  const double height = std::ceil(count / width);
-  const auto n = static_cast<Eigen::Index>(options.points);
-  Scan scan = {Positions(3, n), Positions(3, n)};
-  forEach(options.points, [&](std::size_t i) {
-    const double row = std::floor(static_cast<double>(i) / width);
-    const double column = static_cast<double>(i) - row * width;
-    const Vector3d ray(column + 0.5 - width / 2.0, row + 0.5 - height / 2.0, focal_length * width);
-    Vector3d p = 0.2 * ray.normalized();
-    double value = distance(p);
-    for (int step = 0; step < most_steps && value > 1e-7; ++step) {
-      p += 0.7 * value * ray.normalized();  // because it is not quite the distance
-      value = distance(p);
-    }
-    scan.points.col(static_cast<Eigen::Index>(i)) = p;
-    scan.normals.col(static_cast<Eigen::Index>(i)) = gradientAt(p, distance).normalized();
-  });
-  std::mt19937_64 random(options.seed);
-  for (auto p : scan.points.colwise())
-    p *= 1.0 + options.noise * (2.0 * uniform(random) - 1.0) / (focal_length * width);
-  return scan;
-}
-
-}  // namespace
-
 Scan generateScan(const ScanOptions& options) {
-  if (options.shape == deskScene().name)
-    return depthImage(deskScene().distance, options);
   const TruthMesh mesh = referenceMesh(options.shape, 128);
   const auto corner = [&](Eigen::Index t, int k) -> Vector3d {
     return mesh.vertices.col(mesh.triangles(k, t));
@@ -472,6 +281,36 @@ Scan generateScan(const ScanOptions& options) {
       sum += (clean.col(lists.indices[k]) - clean.col(column)).norm();
     const double width = options.noise * sum / neighbors;
     scan.points.col(column) += width * (2.0 * uniform(random) - 1.0) * scan.normals.col(column);
+  }
+  return scan;
+}
+
+Scan sliceShape(const ScanOptions& options) {
+  const TruthMesh mesh = referenceMesh(options.shape);
+  const double low = mesh.vertices.row(2).minCoeff();
+  const double step = (mesh.vertices.row(2).maxCoeff() - low) / options.slices;
+  const auto height = [&](Index vertex) { return (mesh.vertices(2, vertex) - low) / step - 0.5; };
+  std::vector<Vector3d> points;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = mesh.triangles(k, t);
+      const Index b = mesh.triangles((k + 1) % 3, t);
+      // Each edge is a side of two triangles, once upward.
+      for (double plane = std::ceil(height(a)); plane < height(b); ++plane) {
+        const double fraction = (plane - height(a)) / (height(b) - height(a));
+        points.emplace_back(mesh.vertices.col(a) +
+                            fraction * (mesh.vertices.col(b) - mesh.vertices.col(a)));
+      }
+    }
+  std::sort(points.begin(), points.end(), [](const Vector3d& a, const Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  const Distance& distance = findShape(options.shape).distance;
+  Scan scan = {Positions(3, points.size()), Positions(3, points.size())};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    scan.points.col(column) = points[i];
+    scan.normals.col(column) = gradientAt(points[i], distance).normalized();
   }
   return scan;
 }

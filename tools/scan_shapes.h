@@ -1,18 +1,15 @@
 #pragma once
 
+#include "scan_distances.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 /// Parts of the command line tools that do not belong to the library.
 namespace spherical_param::tools {
-
-/// Negative inside; near the surface, about the signed distance to it.
-using Distance = std::function<double(const Eigen::Vector3d&)>;
 
 /// A surface that can be scanned, about 1 unit long and centred near the origin.
 struct Shape {
@@ -25,31 +22,38 @@ struct Shape {
 
 const std::vector<Shape>& allShapes();
 
-/// A desk with objects on it, in a room, which a depth camera at the origin sees: it looks along z,
-/// y points down, lengths are in metres. No surface to scan all around, so not one of allShapes().
-const Shape& deskScene();
+/// \throw InvalidInput if there is none of this name.
+const Shape& findShape(const std::string& name);
 
 inline constexpr std::size_t kMaxScanPoints = 10'000'000;
 
 struct ScanOptions {
-  std::string shape = "head";  ///< name of a shape, or of the scene
+  std::string shape = "head";  ///< name of a shape, or of a scene
   std::size_t points = 5000;   ///< 4 ... kMaxScanPoints
   /// Half the width of the uniform noise along the normal, relative to a point's mean distance to
-  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100. Of the scene: along the ray,
-  /// relative to the distance of neighbouring rays at the point.
+  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100.
   double noise = 0.0;
   std::uint64_t seed = 1;
+  int views = 0;   ///< cameras of scanFromViews(), 0 ... 100
+  int slices = 0;  ///< of sliceShape(), 0 ... 1000
 };
 
 struct Scan {
-  Positions points;   ///< 3 x n, column i = point i; no two are equal, not even as float
-  Positions normals;  ///< 3 x n, unit, outward, without noise
+  Positions points;      ///< 3 x n, column i = point i; NaN where a sensor sees nothing
+  Positions normals;     ///< 3 x n, unit, outward, without noise; 0 where nothing is seen
+  std::size_t rows = 1;  ///< of an image; 1: the points have no order
 };
 
-/// Points spread evenly over a shape, at random (blue noise), or those of a depth image of the
-/// scene: one for each ray, row by row, on an even grid of 4 x 3. Scans that differ in their noise
-/// only move the same points. \throw InvalidInput if there is no such shape.
+/// Points spread evenly over a shape, at random (blue noise). No two are equal, not even as float.
+/// Scans that differ in their noise only move the same points. \throw InvalidInput if there is no
+/// such shape.
 Scan generateScan(const ScanOptions& options);
+
+/// The contours of a shape in planes at right angles to z, as of a tomograph: points where the
+/// edges of a fine mesh cross the planes, 1/200 unit apart. \throw InvalidInput
+///
+/// \param options `slices`: planes, at least 1; points, noise and seed do not matter.
+Scan sliceShape(const ScanOptions& options);
 
 /// The surface a scan is taken from.
 struct TruthMesh {

@@ -7,6 +7,7 @@
 #include "common/point_data.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "scan_scenes.h"
 #include "scan_shapes.h"
 
 #include <algorithm>
@@ -23,13 +24,15 @@ using namespace spherical_param::tools;
 ToolText toolText() {
   return {"pcl_spherical_param_scan",
           "SHAPE output",
-          "Writes points that are spread evenly over a generated surface, or a depth image.\n"
+          "Writes points that are spread evenly over a generated surface, or what a sensor sees\n"
+          "of a scene.\n"
           "  SHAPE:  a shape or scene, see -list\n  output: " +
               extensionsFor(FileUse::WriteCloud) + "\n",
           {{"A scan of a hand to try the other tools on", "hand scan.ply"},
            {"A noisy one of another size, and the surface that it comes from",
             "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
-           {"What a depth camera sees of a desk", "desk depth.ply"}},
+           {"What a depth camera sees of a desk, as an organized cloud", "desk depth.pcd"},
+           {"What eight depth cameras around an animal see", "animal turn.ply -views 8 -noise 1"}},
           "0 done, 1 failed, 2 wrong usage."};
 }
 
@@ -42,19 +45,25 @@ struct Settings {
 };
 
 OptionTable optionsOf(Settings& settings) {
-  return {numberOption("points", "number of points; of a depth image 76800 by default",
-                       settings.scan.points, 4, kMaxScanPoints),
-          numberOption("noise",
-                       "noise along the normal or the ray, relative to the distance of neighbours",
-                       settings.scan.noise, 0, 100),
-          numberOption("seed", "seed of the random placement", settings.scan.seed, 0, 1e15),
-          flagOption("normals", "write the normals of the surface, too", settings.normals),
-          fileOption("truth", "write a fine mesh of the surface", settings.truth),
-          flagOption("list", "list the shapes", settings.list)};
+  return {
+      numberOption("points", "number of points; of a scene, about: see -list for the default",
+                   settings.scan.points, 4, kMaxScanPoints),
+      numberOption("noise",
+                   "noise along the normal, relative to the distance of neighbours; of a scene,\n"
+                   "relative to that of its sensor (1 by default)",
+                   settings.scan.noise, 0, 100),
+      numberOption("seed", "seed of the random placement and noise", settings.scan.seed, 0, 1e15),
+      numberOption("views",
+                   "what this number of depth cameras around the shape see, merged; the noise is\n"
+                   "along their rays, and half as much is their error of registration",
+                   settings.scan.views, 0, 100),
+      numberOption("slices", "contours in this number of planes, as of a tomograph",
+                   settings.scan.slices, 0, 1000),
+      flagOption("normals", "write the normals of the surface, too", settings.normals),
+      fileOption("truth", "write a fine mesh of the surface; of a scene, of what is seen",
+                 settings.truth),
+      flagOption("list", "list the shapes and scenes", settings.list)};
 }
-
-/// Of the depth image, unless the command line says it: 320 x 240.
-constexpr std::size_t kDepthPoints = 76800;
 
 std::string listText() {
   const auto line = [](const std::string& name, const std::string& text) {
@@ -63,7 +72,10 @@ std::string listText() {
   std::string text = "Shapes:\n";
   for (const Shape& shape : allShapes())
     text += line(shape.name, shape.description);
-  return text + "Scene:\n" + line(deskScene().name, deskScene().description);
+  text += "Scenes:\n";
+  for (const Scene& scene : allScenes())
+    text += line(scene.name, scene.description + ", " + std::to_string(scene.points) + " points");
+  return text;
 }
 
 /// Shape and output, in either order.
@@ -77,25 +89,59 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
 }
 
-void parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
+/// \return whether it is a scene.
+bool parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
   ScanOptions& scan = settings.scan;
   scan.shape = lowerCase(name);
-  if (scan.shape == deskScene().name)
-    scan.points = kDepthPoints;
-  else if (std::none_of(allShapes().begin(), allShapes().end(),
-                        [&](const Shape& shape) { return shape.name == scan.shape; }))
+  const auto is_it = [&](const auto& one) { return one.name == scan.shape; };
+  const auto scene = std::find_if(allScenes().begin(), allScenes().end(), is_it);
+  const bool is_scene = scene != allScenes().end();
+  if (is_scene) {
+    scan.points = scene->points;
+    scan.noise = 1.0;
+  } else if (std::none_of(allShapes().begin(), allShapes().end(), is_it)) {
     throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + toolText().name + " -list' for the shapes");
+  }
   command_line.apply(optionsOf(settings));
-  if (scan.shape == deskScene().name && !settings.truth.empty())
-    throw UsageError("there is no true mesh of a scene", "leave -truth out");
+  if (is_scene && (scan.views > 0 || scan.slices > 0))
+    throw UsageError(inQuotes(scan.shape) + " is a scene, which one sensor sees",
+                     "leave -views and -slices out, or take a shape");
+  if (scan.slices > 0)
+    for (const char* const other : {"views", "noise", "points", "seed"})
+      if (command_line.has(other))
+        throw UsageError(std::string("-") + other + " has no effect on slices", "leave it out");
+  return is_scene;
+}
+
+/// A cloud to write: as an image where the format has one, else what is seen alone.
+PointData cloudOf(const Scan& scan, bool has_normals, const std::string& path) {
+  PointData cloud;
+  cloud.points = toPoints(scan.points);
+  if (has_normals)
+    cloud.normals = toNormals(scan.normals);
+  if (extensionOf(path) == ".pcd") {
+    cloud.rows = scan.rows;
+    return cloud;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (cloud.position(i).allFinite()) {
+      cloud.points[kept] = cloud.points[i];
+      if (has_normals)
+        cloud.normals[kept] = cloud.normals[i];
+      ++kept;
+    }
+  cloud.points.resize(kept);
+  cloud.normals.resize(has_normals ? kept : 0);
+  return cloud;
 }
 
 void run(const CommandLine& command_line, Settings& settings) {
   if (command_line.has("list"))
     return printAll(listText());
   const auto [shape, output] = shapeAndOutput(command_line.others());
-  parse(shape, command_line, settings);
+  const bool is_scene = parse(shape, command_line, settings);
   std::vector<std::string> outputs = {output};
   std::vector<FileFormat> formats = {requireFormat(output, FileUse::WriteCloud)};
   if (!settings.truth.empty()) {
@@ -111,19 +157,23 @@ void run(const CommandLine& command_line, Settings& settings) {
     writeMesh(file, MeshView(data, triangles), format, Encoding::Binary);
     file.finish();
   };
-  const Scan scan = generateScan(settings.scan);
-  PointData cloud;
-  cloud.points = toPoints(scan.points);
-  if (settings.normals)
-    cloud.normals = toNormals(scan.normals);
+  const ScanOptions& options = settings.scan;
+  SceneScan made;
+  if (is_scene)
+    made = scanScene(options);
+  else
+    made.scan = options.views > 0    ? scanFromViews(options)
+                : options.slices > 0 ? sliceShape(options)
+                                     : generateScan(options);
+  const PointData cloud = cloudOf(made.scan, settings.normals, output);
   write(cloud, {});
   if (!settings.truth.empty()) {
-    const TruthMesh truth = referenceMesh(settings.scan.shape);
+    const TruthMesh truth = is_scene ? std::move(made.truth) : referenceMesh(options.shape);
     PointData vertices;
     vertices.points = toPoints(truth.vertices);
     write(vertices, truth.triangles);
   }
-  printAll(std::to_string(settings.scan.points) + " points written to " + oneLine(output) + "\n");
+  printAll(std::to_string(cloud.points.size()) + " points written to " + oneLine(output) + "\n");
   for (OutputFile& file : files)
     file.commit();
 }

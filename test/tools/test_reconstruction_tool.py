@@ -191,7 +191,7 @@ class ReconstructionTool(ToolTest):
         self.assertNotIn("centroid", done.stdout)
 
     def test_a_depth_image_is_seen_from_its_sensor(self):
-        run("scan", "desk", "depth.ply", "-points", 4800)
+        run("scan", "desk", "depth.ply", "-points", 4800, "-noise", 0)
         write_xyz("depth.xyz", read_ply("depth.ply")[0] + [10, 0, 0])
         report = reported("depth.xyz", "mesh.ply", "-view", "10,0,0", "-sphere", "sphere.ply")
         self.assertEqual(report["view"], {"place": [10.0, 0.0, 0.0], "source": "given"})

@@ -10,6 +10,8 @@ from tool_test import ToolTest, check_surface, nearest, read_ply, run
 # V - E + F of those that are no sphere: 2 for each piece, 2 less for each handle, 1 less for each opening.
 EULER = {"pair": 4, "torus": 0, "bowl": 1, "chair": -6, "holed": -2}
 
+SCENES = ["desk", "yard", "town", "jaw"]
+
 
 def scan(shape, points, *options):
     """Points and normals."""
@@ -41,9 +43,9 @@ class Scan(ToolTest):
         self.assertAlmostEqual((relative**2).mean(), 1 / 3, delta=5 * (4 / 45 / 1000) ** 0.5)
 
     def test_every_shape_is_covered_evenly_and_has_a_true_mesh_of_its_topology(self):
-        *names, scene = re.findall(r"^  (\w+) ", run("scan", "-list"), re.MULTILINE)
-        self.assertEqual([len(names), set(EULER) - set(names), scene], [10, set(), "desk"])
-        for name in names:
+        shapes, scenes = (re.findall(r"^  (\w+) ", list, re.MULTILINE) for list in run("scan", "-list").split("Scenes:"))
+        self.assertEqual([len(shapes), set(EULER) - set(shapes), scenes], [10, set(), SCENES])
+        for name in shapes:
             with self.subTest(name):
                 points, normals = scan(name, 600, "-truth", "truth.ply")
                 vertices, _, triangles = read_ply("truth.ply")
@@ -79,7 +81,7 @@ class Scan(ToolTest):
 
     def test_a_depth_image_has_a_point_on_each_ray_of_an_even_grid(self):
         width, height = 160, 120
-        points, normals = scan("desk", width * height)
+        points, normals = scan("desk", width * height, "-noise", 0)
         rays = (points[:, :2] / points[:, 2:]).reshape(height, width, 2)
         step = np.ptp(rays[0, :, 0]) / (width - 1)
         self.assertLess(np.abs(np.diff(rays[:, :, 0], axis=1) - step).max(), 1e-5)  # single precision
@@ -87,6 +89,51 @@ class Scan(ToolTest):
         self.assertLess(np.abs(rays.mean(axis=(0, 1))).max(), 1e-5)  # the camera looks along z
         self.assertTrue(((0.2 < points[:, 2]) & (points[:, 2] < 2)).all())
         self.assertGreater(((points * normals).sum(axis=1) < 0).mean(), 0.999)  # they face the camera
+
+    def test_a_scene_is_an_image_and_its_truth_what_is_seen_without_noise(self):
+        for scene in SCENES:
+            with self.subTest(scene):
+                points, normals = scan(scene, 3000, "-noise", 0, "-truth", "truth.ply")
+                vertices, _, triangles = read_ply("truth.ply")
+                self.assertAlmostEqual(np.median(np.linalg.norm(normals, axis=1)), 1)
+                a, b, c = vertices[triangles].transpose(1, 0, 2)
+                normal = np.cross(b - a, c - a)
+                toward = [0, 0, 1] if scene == "town" else -a
+                sine = (normal * toward).sum(axis=1) / np.linalg.norm(normal, axis=1) / np.linalg.norm(toward, axis=-1)
+                self.assertGreater(sine.min(), 0.069)  # faces the sensor, and bridges no jump
+                if scene == "town":  # map coordinates in centimetres, between the vertices
+                    self.assertTrue(np.allclose(points, np.round(points, 2), atol=1e-9))
+                    self.assertGreater(points[:, 1].min(), 5420000)
+                    continue
+                run("scan", scene, "image.pcd", "-points", 3000, "-noise", 0)
+                header = pathlib.Path("image.pcd").read_bytes().split(b"DATA binary\n")[0].decode()
+                width, height, count = (int(re.search(f"^{name} (\\d+)", header, re.MULTILINE)[1])
+                                        for name in ("WIDTH", "HEIGHT", "POINTS"))  # fmt: skip
+                self.assertEqual(width * height, count)
+                self.assertTrue(height > 20 and len(points) <= count)
+                self.assertLess(np.linalg.norm(vertices[::9] - points[nearest(vertices[::9], points)], axis=1).max(), 1e-4)
+
+    def test_the_noise_of_a_sensor_grows_with_its_factor(self):
+        for scene in SCENES:
+            clean, *noisy = (scan(scene, 3000, "-noise", factor)[0] for factor in (0, 0.5, 1))
+            errors = [np.median(np.linalg.norm(one - clean[nearest(one, clean)], axis=1)) for one in noisy]
+            self.assertTrue(0 < errors[0] < errors[1], scene)
+
+    def test_views_of_a_shape_are_merged_with_noise_along_their_rays(self):
+        errors = []
+        for noise in (0, 0.5, 1):
+            points = scan("sphere", 6000, "-views", 8, "-noise", noise)[0]
+            self.assertAlmostEqual(len(points), 6000, delta=300)
+            errors.append((np.linalg.norm(points, axis=1) - 0.5).std())
+        self.assertLess(errors[0], 1e-6)
+        self.assertAlmostEqual(errors[2] / errors[1], 2, delta=0.1)
+
+    def test_slices_are_contours_in_planes(self):
+        run("scan", "torus", "out.xyz", "-slices", 7)
+        points = np.loadtxt("out.xyz")
+        self.assertEqual(len(np.unique(np.round(points[:, 2], 6))), 7)
+        self.assertLess(np.abs(np.hypot(np.hypot(points[:, 0], points[:, 1]) - 0.36, points[:, 2]) - 0.14).max(), 1e-4)
+        self.assertLess(neighbors(points[points[:, 2] > 0.1], 1).max(), 0.01)
 
     def test_every_format_holds_points_and_normals(self):
         for extension in ("pcd", "ply", "obj", "xyz", "txt"):

@@ -61,6 +61,8 @@ public:
   void markAdded(std::vector<std::uint8_t> marks) { added_ = std::move(marks); }
 
   std::size_t vertexCount() const { return vertex_count_; }
+  /// Of an image, of which the vertices are the pixels; 1: of none.
+  std::size_t rows() const { return indices_ == nullptr ? data_->rows : 1; }
   std::size_t triangleCount() const { return triangle_count_; }
   bool hasNormals() const { return has_normals_; }
   bool hasColors() const { return !data_->colors.empty(); }

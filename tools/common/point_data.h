@@ -51,6 +51,7 @@ struct PointData {
   std::vector<Scalar> scalars;     ///< each with one number per point
   std::vector<Index> unused;       ///< points that are in no face of the file
   std::optional<Point> viewpoint;  ///< of the sensor, if the file says it
+  std::size_t rows = 1;            ///< of an image, of which the points are the pixels; 1: of none
   bool has_null_normals = false;   ///< the normals of the file are all zero, and left out
   bool has_alpha = false;          ///< the alpha of the colours comes from a file; else it is 255
   std::string contents;            ///< what was taken from a file, e.g. "text, columns x y z"

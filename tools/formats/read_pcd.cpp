@@ -175,12 +175,13 @@ RecordLayout layoutOf(InputFile& file, Entries& entries) {
 PointData readPcd(InputFile& file, const std::vector<std::string>& /*columns*/) {
   Entries entries = readEntries(file);
   PointData data = readRecords(file, layoutOf(file, entries));
+  data.rows = static_cast<std::size_t>(requireCount(file, entries["HEIGHT"][0], "rows"));
   Point sensor{};
   for (std::size_t axis = 0; axis < std::min<std::size_t>(3, entries["VIEWPOINT"].size()); ++axis) {
     sensor[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
   }
   if (viewpointOf(positionsOf(data), Eigen::Map<const Eigen::Vector3d>(sensor.data()),
-                  entries["HEIGHT"][0] != "1")) {
+                  data.rows != 1)) {
     data.viewpoint = sensor;
   }
   return data;

@@ -21,9 +21,11 @@ void writePcdHeader(RecordWriter& writer, const MeshView& mesh) {
     counts += " 1";
   }
   const std::string points = std::to_string(mesh.vertexCount());
+  const std::string columns = std::to_string(mesh.vertexCount() / mesh.rows());
   writer.line("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields +
-              "\nSIZE" + sizes + "\nTYPE " + types + "\nCOUNT" + counts + "\nWIDTH " + points +
-              "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA binary");
+              "\nSIZE" + sizes + "\nTYPE " + types + "\nCOUNT" + counts + "\nWIDTH " + columns +
+              "\nHEIGHT " + std::to_string(mesh.rows()) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " +
+              points + "\nDATA binary");
 }
 
 }  // namespace
