@@ -97,13 +97,13 @@ Matrix3d axesToward(const Vector3d& place, const Vector3d& target) {
 /// The depth along a ray, and the surface there; NaN and -1: none. Sphere tracing (J. C. Hart,
 /// 1996).
 std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, double reach) {
-  constexpr int most_steps = 2000;
+  constexpr int most_steps = 2000;  // along a surface that the ray grazes
   const double length = ray.norm();
   double depth = 1e-3 * reach;
+  int nearest = 0;
   for (int step = 0; step < most_steps && depth < reach; ++step) {
     const Vector3d p = depth * ray;
     double least = std::numeric_limits<double>::max();
-    int nearest = 0;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
       const double value = surfaces[s](p);
       if (value < least) {
@@ -112,9 +112,11 @@ std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, doub
       }
     }
     if (least < 1e-6 * depth)
-      return {depth, nearest};
+      break;
     depth += 0.7 * least / length;  // because it is not quite the distance
   }
+  if (depth < reach)
+    return {depth, nearest};
   return {no_depth, -1};
 }
 
