@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The whole way on a bare Debian 12: installs what is missing, builds, scans a generated hand,
-# meshes it, and draws cloud, mesh and sphere side by side.
+# The whole way on a bare Debian 12: installs what is missing, builds the tools, takes a depth image
+# of a generated desk, meshes it, and draws cloud and mesh side by side.
 #
 #   tools/demo.sh [OUTPUT_FOLDER]      default: demo_output in the checkout
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
-build="$root/build/release"
+build="$root/build/demo"
 
 # What to do if the step that is under way fails.
 remedy=""
@@ -23,27 +23,27 @@ mkdir -p "$out"
 [ -w "$out" ]
 
 remedy="see above; tools/packages.txt lists what is needed"
-"$root/tools/setup.sh"
+"$root/tools/setup.sh" --demo
 
-log="$build/demo-build.log"
+log="$build/build.log"
 mkdir -p "$build"
 remedy="the output of the build is in $log; remove $build to start afresh"
 echo "demo.sh: building in $build (a minute or two at first, seconds later)"
 (
-  cd "$root"
-  cmake --preset release
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF \
+    -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_PYTHON=OFF
   cmake --build "$build" --target pcl_spherical_param_scan pcl_spherical_param_reconstruction
 ) >"$log" 2>&1
 
 remedy="the message above says why; the tools are in $build/bin"
-"$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points 20000
+"$build/bin/pcl_spherical_param_scan" desk "$out/scan.ply"
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
-  -sphere "$out/sphere.ply" -report "$out/report.html"
+  -report "$out/report.html"
 
 # The demo does not fail for the picture.
-if "$root/tools/draw.py" "$out/demo.png" "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" \
-  --colors "$out/sphere.ply" --size 1320x440 --view 25,20 \
-  --caption "point cloud" --caption "closed mesh" --caption "its map to the sphere"; then
+if "$root/tools/draw.py" "$out/demo.png" "$out/scan.ply" "$out/mesh.ply" "$out/mesh.ply" \
+  --size 1320x400 --view 0,-90 --view 0,-90 --view 20,-55 \
+  --caption "depth image of a desk" --caption "mesh" --caption "mesh from above"; then
   picture="$out/demo.png"
 else
   rm -f "$out/demo.png"
@@ -51,5 +51,5 @@ else
 fi
 
 echo
-printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" sphere "$out/sphere.ply" \
-  report "$out/report.html" picture "$picture"
+printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" report "$out/report.html" \
+  picture "$picture"

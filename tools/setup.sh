@@ -3,6 +3,7 @@
 # network nor root, if there are none.
 #
 #   tools/setup.sh [NAME...]     those of tools/packages-NAME.txt, too
+#   tools/setup.sh --demo        those of tools/packages.txt that the demo needs
 set -euo pipefail
 
 fail() {
@@ -12,6 +13,11 @@ fail() {
 
 folder="$(dirname "${BASH_SOURCE[0]}")"
 lists=("$folder/packages.txt")
+last='$'
+if [ "$*" = --demo ]; then
+  last='/^# The demo needs no more/'
+  shift
+fi
 for name in "$@"; do
   [ -f "$folder/packages-$name.txt" ] || fail "there is no list $folder/packages-$name.txt"
   lists+=("$folder/packages-$name.txt")
@@ -19,7 +25,7 @@ done
 command -v dpkg-query >/dev/null ||
   fail "this is not Debian: install what ${lists[*]} name by other means"
 
-mapfile -t wanted < <(cat "${lists[@]}" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
+mapfile -t wanted < <(cat "${lists[@]}" | sed "${last}q" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
 
 # dpkg-query fails for names that it never heard of; those are missing as well.
 installed="$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
