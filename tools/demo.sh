@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The whole way on a bare Debian 12: installs what is missing, builds the tools, takes a depth image
-# of a generated desk, meshes it, and draws cloud and mesh side by side.
+# of a generated desk, and meshes it. Leaves the mesh, and a page to look at.
 #
 #   tools/demo.sh [OUTPUT_FOLDER]      default: demo_output in the checkout
 set -euo pipefail
@@ -40,16 +40,5 @@ remedy="the message above says why; the tools are in $build/bin"
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
   -report "$out/report.html"
 
-# The demo does not fail for the picture.
-if "$root/tools/draw.py" "$out/demo.png" "$out/scan.ply" "$out/mesh.ply" "$out/mesh.ply" \
-  --size 1320x400 --view 0,-90 --view 0,-90 --view 20,-55 \
-  --caption "depth image of a desk" --caption "mesh" --caption "mesh from above"; then
-  picture="$out/demo.png"
-else
-  rm -f "$out/demo.png"
-  picture="not made; draw.py says why above"
-fi
-
 echo
-printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" report "$out/report.html" \
-  picture "$picture"
+printf '%-8s %s\n' scan "$out/scan.ply" mesh "$out/mesh.ply" report "$out/report.html"

@@ -24,7 +24,7 @@ cloned() {
 demo() {
   local file
   as_printed "$(doc_block README.md 1)" || return 1
-  for file in scan.ply mesh.ply report.html demo.png; do
+  for file in scan.ply mesh.ply report.html; do
     [ -s "$clone/demo_output/$file" ] || {
       echo "$file is missing or empty"
       return 1
