@@ -162,13 +162,40 @@ def depth_camera():
          ("mesh.ply", "from above")], f"--view={CAMERA}", f"--view={CAMERA}", "--view=20,-55")  # fmt: skip
 
 
+def recipes():
+    """The guide's "I have a ...", in three rows."""
+    for kind, shape, options in (
+        ("depth", "desk", []), ("tripod", "yard", []), ("tile", "town", []), ("contours", "hand", ["-slices", 80]),
+        ("turn", "animal", ["-views", 8, "-noise", 0.5, "-points", 20000]),
+    ):  # fmt: skip
+        run("scan", shape, f"{kind}.ply", *options)
+        run("reconstruction", f"{kind}.ply", f"{kind}_mesh.ply")
+    run("scan", "head", "points.ply", "-truth", "fine.ply")
+    run("remesh", "fine.ply", "fine_mesh.ply", "-points", 2562)
+    kinds = {"depth": ("depth image", CAMERA), "tripod": ("laser scan", "30,40"), "tile": ("airborne tile, enlarged", "30,30"),
+             "turn": ("turntable scan", "30,10"), "contours": ("contours", "25,10"), "fine": ("a mesh", "25,10")}  # fmt: skip
+    rows = []
+    for row in (["depth", "tripod"], ["tile", "turn"], ["contours", "fine"]):
+        views = [(f"{kind}{end}.ply", kinds[kind][0] if not end else "remeshed" if kind == "fine" else "its mesh")
+                 for kind in row for end in ("", "_mesh")]  # fmt: skip
+        draw("row.png", "1320x280", views, *(f"--view={kinds[kind][1]}" for kind in row for _ in range(2)),
+             *(["--edges"] if "fine" in row else []))  # fmt: skip
+        rows.append(Image.open("row.png").convert("RGB"))
+    drawing.main(["near.png", "tile.ply", "tile_mesh.ply", "--size=1320x492", f"--view={kinds['tile'][1]}"])
+    for left in (0, 330):  # the middle, twice as large
+        near = Image.open("near.png").convert("RGB").crop((2 * left + 175, 133, 2 * left + 485, 359))
+        rows[1].paste(Image.new("RGB", (330, 246), "white"), (left, 0))
+        rows[1].paste(near, (left + 10, 10))
+    drawing.save(PICTURES / "recipes.png", Image.fromarray(np.vstack(rows)))
+
+
 def scans():
     shapes = ["head", "bird", "hand", "animal", "holed", "torus", "chair", "bowl"]
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
 ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera,
-       scans]  # fmt: skip
+       recipes, scans]  # fmt: skip
 
 
 def main(names):
