@@ -191,7 +191,9 @@ def recipes():
 
 def scans():
     shapes = ["head", "bird", "hand", "animal", "holed", "torus", "chair", "bowl"]
-    draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
+    run("scan", "jaw", "jaw.ply")
+    draw(PICTURES / "scans.png", "1320x150", [*((scan(shape, 2500), shape) for shape in shapes), ("jaw.ply", "jaw")],
+         *["--view=25,15"] * len(shapes), f"--view={CAMERA}")  # fmt: skip
 
 
 ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera,
