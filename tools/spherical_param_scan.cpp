@@ -49,12 +49,12 @@ OptionTable optionsOf(Settings& settings) {
       numberOption("points", "number of points; of a scene, about: see -list for the default",
                    settings.scan.points, 4, kMaxScanPoints),
       numberOption("noise",
-                   "noise along the normal, relative to the distance of neighbours; of a scene,\n"
+                   "noise along the normal, relative to the distance of neighbours; of a scene, "
                    "relative to that of its sensor (1 by default)",
                    settings.scan.noise, 0, 100),
       numberOption("seed", "seed of the random placement and noise", settings.scan.seed, 0, 1e15),
       numberOption("views",
-                   "what this number of depth cameras around the shape see, merged; the noise is\n"
+                   "what this number of depth cameras around the shape see, merged; the noise is "
                    "along their rays, and half as much is their error of registration",
                    settings.scan.views, 0, 100),
       numberOption("slices", "contours in this number of planes, as of a tomograph",
