@@ -29,7 +29,8 @@ namespace {
 
 using namespace spherical_param::benchmark;
 using spherical_param::Index;
-using spherical_param::Positions;
+using spherical_param::tools::Point;
+using spherical_param::tools::PointData;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using TriangleSoup = std::vector<std::array<std::size_t, 3>>;
@@ -44,11 +45,11 @@ constexpr double alpha_per_offset = 30.0;
 const std::string front_parameters = "radius ratio bound 5, beta 0.52 (defaults)";
 const std::string spacing_parameters = "of " + std::to_string(spacing_neighbors) + " neighbours";
 
-std::vector<Kernel::Point_3> toCgal(const Positions& points) {
+std::vector<Kernel::Point_3> toCgal(const PointData& cloud) {
   std::vector<Kernel::Point_3> converted;
-  converted.reserve(static_cast<std::size_t>(points.cols()));
-  for (const auto& point : points.colwise())
-    converted.emplace_back(point.x(), point.y(), point.z());
+  converted.reserve(cloud.points.size());
+  for (const Point& point : cloud.points)
+    converted.emplace_back(point[0], point[1], point[2]);
   return converted;
 }
 
@@ -76,12 +77,12 @@ TriangleSoup advanceFront(const std::vector<Kernel::Point_3>& points) {
   return triangles;
 }
 
-PeerResult advancingFront(const Positions& points) {
-  const TriangleSoup triangles = advanceFront(toCgal(points));
+PeerResult advancingFront(const PointData& cloud) {
+  const TriangleSoup triangles = advanceFront(toCgal(cloud));
   PeerResult result;
   result.parameters = front_parameters + "; 1 thread";
   result.resize(0, triangles.size());
-  result.points = points;
+  result.points = positionsOf(cloud);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       result.triangles(static_cast<int>(k), static_cast<Eigen::Index>(t)) =
@@ -89,8 +90,8 @@ PeerResult advancingFront(const Positions& points) {
   return result;
 }
 
-PeerResult advancingFrontFilled(const Positions& points) {
-  std::vector<Kernel::Point_3> vertices = toCgal(points);
+PeerResult advancingFrontFilled(const PointData& cloud) {
+  std::vector<Kernel::Point_3> vertices = toCgal(cloud);
   TriangleSoup triangles = advanceFront(vertices);
   // Splits vertices where sheets touch in one point, because the mesh cannot hold those.
   PMP::orient_polygon_soup(vertices, triangles);
@@ -105,8 +106,8 @@ PeerResult advancingFrontFilled(const Positions& points) {
   return fromCgal(mesh, front_parameters + "; then triangulate_hole() for every hole; 1 thread");
 }
 
-PeerResult alphaWrap(const Positions& points) {
-  const std::vector<Kernel::Point_3> vertices = toCgal(points);
+PeerResult alphaWrap(const PointData& cloud) {
+  const std::vector<Kernel::Point_3> vertices = toCgal(cloud);
   // Fine enough to be compared. With less, the wrap gets in between the points of many clouds.
   const double alpha =
       4.0 * CGAL::compute_average_spacing<CGAL::Sequential_tag>(vertices, spacing_neighbors);
@@ -116,12 +117,12 @@ PeerResult alphaWrap(const Positions& points) {
                             ", offset alpha / 30; 1 thread");
 }
 
-PeerResult poisson(const Positions& points) {
+PeerResult poisson(const PointData& cloud) {
   const auto point_map = CGAL::First_of_pair_property_map<PointWithNormal>();
   const auto normal_map = CGAL::Second_of_pair_property_map<PointWithNormal>();
   const auto maps = CGAL::parameters::point_map(point_map).normal_map(normal_map);
   std::vector<PointWithNormal> oriented;
-  for (const Kernel::Point_3& point : toCgal(points))
+  for (const Kernel::Point_3& point : toCgal(cloud))
     oriented.emplace_back(point, CGAL::NULL_VECTOR);
   CGAL::pca_estimate_normals<CGAL::Parallel_if_available_tag>(oriented, normal_neighbors, maps);
   // Points that it cannot orient come last. The manual leaves them out, too.

@@ -20,7 +20,7 @@ namespace {
 using namespace spherical_param::benchmark;
 using open3d::geometry::PointCloud;
 using open3d::geometry::TriangleMesh;
-using spherical_param::Positions;
+using spherical_param::tools::PointData;
 
 constexpr int normal_neighbors = 30;  // default of Open3D
 
@@ -30,10 +30,10 @@ const std::string normals_parameters =
     std::to_string(kOrientationNeighbors) + " neighbours on 1 thread";
 
 /// The points with normals.
-PointCloud withNormals(const Positions& points) {
+PointCloud withNormals(const PointData& data) {
   PointCloud cloud;
-  for (const auto& point : points.colwise())
-    cloud.points_.emplace_back(point);
+  for (std::size_t i = 0; i < data.points.size(); ++i)
+    cloud.points_.emplace_back(data.position(i));
   cloud.EstimateNormals(open3d::geometry::KDTreeSearchParamKNN(normal_neighbors));
   cloud.OrientNormalsConsistentTangentPlane(kOrientationNeighbors);
   return cloud;
@@ -51,8 +51,8 @@ PeerResult resultOf(const TriangleMesh& surface, const std::string& parameters) 
 }
 
 /// Radii as in Open3D's tutorial on surface reconstruction.
-PeerResult ballPivoting(const Positions& points) {
-  const PointCloud cloud = withNormals(points);
+PeerResult ballPivoting(const PointData& data) {
+  const PointCloud cloud = withNormals(data);
   const std::vector<double> distances = cloud.ComputeNearestNeighborDistance();
   const double mean_distance = std::accumulate(distances.begin(), distances.end(), 0.0) /
                                static_cast<double>(distances.size());
@@ -61,8 +61,8 @@ PeerResult ballPivoting(const Positions& points) {
                   "; radii 1.5 and 3 mean distances to the nearest neighbour; 1 thread");
 }
 
-PeerResult poisson(const Positions& points) {
-  const PointCloud cloud = withNormals(points);
+PeerResult poisson(const PointData& data) {
+  const PointCloud cloud = withNormals(data);
   constexpr std::size_t depth = 8;
   return resultOf(*std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(cloud, depth)),
                   "; depth " + std::to_string(depth) +

@@ -9,14 +9,17 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/gp3.h>
+#include <pcl/surface/organized_fast_mesh.h>
 #include <pcl/surface/poisson.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numeric>
 #include <queue>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -24,7 +27,7 @@
 namespace {
 
 using namespace spherical_param::benchmark;
-using spherical_param::Positions;
+using spherical_param::tools::PointData;
 
 constexpr int normal_neighbors = 16;
 
@@ -80,12 +83,19 @@ const std::string normals_parameters =
     " on all cores, oriented along the minimum spanning tree of " +
     std::to_string(kOrientationNeighbors) + " neighbours on 1 thread";
 
+pcl::PointCloud<pcl::PointXYZ>::Ptr toPcl(const PointData& data) {
+  const auto positions = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const Eigen::Vector3f point = data.position(i).cast<float>();
+    positions->emplace_back(point.x(), point.y(), point.z());
+  }
+  return positions;
+}
+
 /// The points with normals out of the surface, if it is closed. Points without a normal are left
 /// out.
-Cloud::Ptr withNormals(const Positions& points) {
-  const auto positions = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const Eigen::Vector3f point : points.cast<float>().colwise())
-    positions->emplace_back(point.x(), point.y(), point.z());
+Cloud::Ptr withNormals(const PointData& data) {
+  const auto positions = toPcl(data);
   pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation;
   estimation.setInputCloud(positions);
   estimation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
@@ -104,13 +114,16 @@ Cloud::Ptr withNormals(const Positions& points) {
   return cloud;
 }
 
-PeerResult resultOf(const Cloud& vertices, const std::vector<pcl::Vertices>& polygons,
-                    const std::string& parameters) {
+template <typename Point>
+PeerResult resultOf(const pcl::PointCloud<Point>& vertices,
+                    const std::vector<pcl::Vertices>& polygons, const std::string& parameters) {
   PeerResult result;
-  result.parameters = normals_parameters + parameters;
+  result.parameters = parameters;
   result.resize(vertices.size(), polygons.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    result.points.col(static_cast<Eigen::Index>(v)) = vertices[v].getVector3fMap().cast<double>();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Eigen::Vector3f point = vertices[v].getVector3fMap();
+    result.points.col(static_cast<Eigen::Index>(v)) = point.cast<double>();
+  }
   for (std::size_t t = 0; t < polygons.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       result.triangles(static_cast<int>(k), static_cast<Eigen::Index>(t)) =
@@ -132,8 +145,8 @@ double meanNeighborDistance(const Cloud& cloud, const pcl::search::KdTree<pcl::P
 
 /// Parameters as in PCL's tutorial on fast triangulation, except for the radius, which belongs to
 /// its data.
-PeerResult greedyProjection(const Positions& points) {
-  const Cloud::Ptr cloud = withNormals(points);
+PeerResult greedyProjection(const PointData& data) {
+  const Cloud::Ptr cloud = withNormals(data);
   constexpr double radius_factor = 10.0;
   const auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
   tree->setInputCloud(cloud);
@@ -152,12 +165,13 @@ PeerResult greedyProjection(const Positions& points) {
   triangulation.reconstruct(polygons);
   return resultOf(
       *cloud, polygons,
-      "; radius 10 mean distances to the nearest neighbour, mu 2.5, 100 neighbours at most, "
-      "surface angle 45, angles 10 to 120 degrees");
+      normals_parameters +
+          "; radius 10 mean distances to the nearest neighbour, mu 2.5, 100 neighbours at most, "
+          "surface angle 45, angles 10 to 120 degrees");
 }
 
-PeerResult poisson(const Positions& points) {
-  const Cloud::Ptr cloud = withNormals(points);
+PeerResult poisson(const PointData& data) {
+  const Cloud::Ptr cloud = withNormals(data);
   constexpr int depth = 8;
   pcl::Poisson<pcl::PointNormal> reconstruction;
   reconstruction.setInputCloud(cloud);
@@ -166,12 +180,39 @@ PeerResult poisson(const Positions& points) {
   std::vector<pcl::Vertices> polygons;
   reconstruction.reconstruct(vertices, polygons);
   return resultOf(vertices, polygons,
-                  "; depth " + std::to_string(depth) + ", 1 thread, all else as PCL sets it");
+                  normals_parameters + "; depth " + std::to_string(depth) +
+                      ", 1 thread, all else as PCL sets it");
+}
+
+/// Connects neighbours in an image, whose sensor is the origin. The angle tolerance is PCL's: a
+/// greatest length of edges, which takes its place, leaves more bridges over jumps in depth.
+PeerResult organized(const PointData& data) {
+  if (data.rows < 2)
+    throw std::runtime_error("the cloud is not organized");
+  const auto cloud = toPcl(data);
+  cloud->height = static_cast<std::uint32_t>(data.rows);
+  cloud->width = static_cast<std::uint32_t>(data.points.size() / data.rows);
+  pcl::OrganizedFastMesh<pcl::PointXYZ> mesher;
+  mesher.setInputCloud(cloud);
+  mesher.setTriangulationType(pcl::OrganizedFastMesh<pcl::PointXYZ>::TRIANGLE_ADAPTIVE_CUT);
+  std::vector<pcl::Vertices> polygons;
+  mesher.reconstruct(polygons);
+  pcl::PointCloud<pcl::PointXYZ> seen;
+  std::vector<pcl::index_t> number(cloud->size());
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    number[i] = static_cast<pcl::index_t>(seen.size());
+    if (pcl::isFinite((*cloud)[i]))
+      seen.push_back((*cloud)[i]);
+  }
+  for (pcl::Vertices& polygon : polygons)
+    for (pcl::index_t& vertex : polygon.vertices)
+      vertex = number[static_cast<std::size_t>(vertex)];
+  return resultOf(seen, polygons, "adaptive cut, angle tolerance 12.5 degrees (default), 1 thread");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return runPeer(argc, argv, "PCL " PCL_VERSION_PRETTY,
-                 {{"gp3", greedyProjection}, {"poisson", poisson}});
+                 {{"gp3", greedyProjection}, {"organized", organized}, {"poisson", poisson}});
 }

@@ -15,12 +15,11 @@
 namespace spherical_param::benchmark {
 
 int runPeer(int argc, char** argv, const std::string& library,
-            const std::map<std::string, PeerResult (*)(const Positions&)>& methods) {
+            const std::map<std::string, PeerResult (*)(const tools::PointData&)>& methods) {
   try {
     if (argc != 4 || methods.count(argv[1]) == 0)
-      throw std::runtime_error("the words are not METHOD POINTS.ply MESH.ply");
-    const Positions points = positionsOf(tools::readCloud(argv[2]));
-    const PeerResult result = methods.at(argv[1])(points);
+      throw std::runtime_error("the words are not METHOD CLOUD MESH.ply");
+    const PeerResult result = methods.at(argv[1])(tools::readCloud(argv[2]));
     if (result.triangles.cols() == 0)
       throw std::runtime_error("no triangles were made");
     tools::PointData vertices;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/point_data.h"
 #include "spherical_param/types.h"
 
 #include <map>
@@ -24,11 +25,11 @@ struct PeerResult {
   }
 };
 
-/// The main() of all peers, PROGRAM METHOD POINTS.ply MESH.ply: reads the points, reconstructs,
+/// The main() of all peers, PROGRAM METHOD CLOUD MESH.ply: reads the points, reconstructs,
 /// writes the mesh, prints a report in JSON.
 ///
 /// \param library with its version. \param methods by their names.
 int runPeer(int argc, char** argv, const std::string& library,
-            const std::map<std::string, PeerResult (*)(const Positions&)>& methods);
+            const std::map<std::string, PeerResult (*)(const tools::PointData&)>& methods);
 
 }  // namespace spherical_param::benchmark
