@@ -72,6 +72,25 @@ class Quality(unittest.TestCase):
         line = mesh_of([(0, 0, 0), (1, 1, 1), (2, 2, 2)], [0, 1, 2])  # has no area, hence no distances
         self.assertIsNone(REFEREE.distances(line, square, 10)["rms"])
 
+    def test_bridges_are_what_is_farther_than_three_spacings_from_the_truth(self):
+        # The truth: cells of 1 x 1, then of 1 x 4, whose spacing is 2; 16 of area.
+        for width, spacing in ((1, 1), (4, 2)):
+            x, y = np.meshgrid(np.arange(0, 5, width), np.arange(5))
+            rows, columns = x.shape
+            corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1, 1)
+            cells = np.concatenate([corner + [0, 1, columns], corner + [1, columns + 1, columns]])
+            truth = mesh_of(np.stack([x, y, 0 * x], axis=2).reshape(-1, 3), cells)
+            self.assertEqual(truth.areas().sum(), 16)
+            # A wall 4 wide and 8 high, which is cut at the height of three spacings, and the truth itself.
+            cut = 3 * spacing
+            wall = [(0, 2, 0), (4, 2, 0), (0, 2, cut), (4, 2, cut), (0, 2, 8), (4, 2, 8)]
+            n = len(truth.points)
+            mesh = mesh_of([*truth.points, *wall], [*truth.triangles, *np.add(n, [(0, 1, 2), (1, 3, 2),
+                                                                                  (2, 3, 4), (3, 5, 4)])])  # fmt: skip
+            # As many samples as units of area: one in each.
+            self.assertAlmostEqual(REFEREE.distances(mesh, truth, 48)["bridges"], 100 * 4 * (8 - cut) / 16)
+            self.assertEqual(REFEREE.distances(truth, truth, 48)["bridges"], 0)
+
     def test_distances_are_from_the_inside_a_side_or_a_corner_of_the_nearest_triangle(self):
         triangle = mesh_of([(0, 0, 0), (4, 0, 0), (0, 4, 0)], [0, 1, 2])
         places = np.array([(1, 1, 2), (1, 1, -2), (1, -3, 0), (4, 4, 1), (-3, -4, 12), (7, -4, 0)], float)

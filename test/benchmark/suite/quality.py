@@ -12,6 +12,7 @@ from draw import read_ply
 # Triangles that are thinner than this fraction of their length have no plane in double precision. They are left
 # out of distances: their neighbours along the longest side are as near.
 NEEDLE = 1e-9
+BRIDGE = 3.0  # spacings from the truth, where a mesh no longer follows the surface
 
 
 @dataclasses.dataclass
@@ -28,6 +29,15 @@ class Mesh:
         """Of each triangle that is not degenerate its sides (m, 3, 2), the lower vertex first."""
         sides = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
         return sides[(sides[:, :, 0] != sides[:, :, 1]).all(axis=1)]
+
+    def write(self, path):
+        """To a PLY file, in single precision."""
+        head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(self.points)}\n"
+        head += "".join(f"property float {axis}\n" for axis in "xyz")
+        head += f"element face {len(self.triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+        faces = np.empty(len(self.triangles), [("corners", "u1"), ("vertices", "<i4", 3)])
+        faces["corners"], faces["vertices"] = 3, self.triangles
+        path.write_bytes(head.encode() + self.points.astype("<f4").tobytes() + faces.tobytes())
 
     def normals(self):
         """Twice as long as the area of each triangle."""
@@ -81,6 +91,12 @@ class Referee:
     def distances(self, mesh, truth, samples):
         """In both directions: distances [percent of the truth's diagonal], and angles between normals [degrees].
 
+        Bridges: the area of the mesh that is farther than BRIDGE spacings from the truth [percent of the truth's
+        area]. It means something if the truth is as fine as the cloud, with two triangles for each cell of four
+        neighbouring rays. The spacing is then the side of a square with the area of the cell at the nearest place of
+        the truth, the root of twice the area of a triangle. It grows with the distance from the sensor, and on a
+        surface that is seen obliquely it is the mean of the short and the long distance of neighbours (geometric).
+
         The samples of each surface are one in each part of equal area, at random in its triangle (R. Osada
         et al., "Shape Distributions", 2002, equation 1).
         """
@@ -88,7 +104,7 @@ class Referee:
         for one, other in ((mesh, truth), (truth, mesh)):
             whole, surface = one.without_needles(), other.without_needles()
             if not len(whole.triangles) or not len(surface.triangles):
-                return {"rms": None, "hausdorff": None, "normals": None}
+                return {"rms": None, "hausdorff": None, "normals": None, "bridges": None}
             ends = np.cumsum(whole.areas())
             places = (np.arange(samples) + random.random(samples)) / samples * ends[-1]
             chosen = np.minimum(np.searchsorted(ends, places, side="right"), len(ends) - 1)
@@ -99,12 +115,15 @@ class Referee:
             normals = whole.normals()[chosen], surface.normals()[nearest]
             cosines = np.abs((normals[0] * normals[1]).sum(axis=1)) / np.prod(np.linalg.norm(normals, axis=2), axis=0)
             of_vertices = self.nearest(surface, one.points[np.unique(one.triangles)])[0]
+            if other is truth:
+                is_far = distances > BRIDGE * np.sqrt(2 * surface.areas()[nearest])
+                bridges = _percent(is_far.mean() * ends[-1], truth.areas().sum())
             found.append((max(distances.max(), of_vertices.max()), (distances**2).mean(),
                           np.degrees(np.arccos(np.minimum(cosines, 1.0))).mean()))  # fmt: skip
         largest, square, angle = np.transpose(found)
         percent = 100.0 / np.linalg.norm(np.ptp(truth.points, axis=0))
         return {"rms": percent * float(np.sqrt(square.mean())), "hausdorff": percent * float(largest.max()),
-                "normals": float(angle.mean())}  # fmt: skip
+                "normals": float(angle.mean()), "bridges": float(bridges)}  # fmt: skip
 
     def distortion(self, mesh, sphere):
         """Of the map to the same triangles on the sphere."""
