@@ -92,15 +92,18 @@ def save(path, picture):
     os.replace(f"{path}.part", path)
 
 
-def draw(out, views, size, captions):
-    """Draws views (dictionaries of draw_view's arguments) side by side."""
+def draw(out, views, size, captions, columns=None):
+    """Draws views (dictionaries of draw_view's arguments) side by side, in rows of `columns` if that is given."""
+    columns = columns or len(views)
+    rows = -(-len(views) // columns)
+    places = [(i % columns / columns, 1 - (i // columns + 1) / rows) for i in range(len(views))]
     # In inches; matplotlib rounds the pixels down.
     figure = pyplot.figure(figsize=[(pixels * SCALE + 0.1) / 100 for pixels in size], dpi=100)
     margin = 34 / size[1] if captions else 0.0
-    for i, view in enumerate(views):
-        draw_view(figure.add_axes([i / len(views), margin, 1 / len(views), 1 - margin]), **view)
-    for i, caption in enumerate(captions):
-        figure.text((i + 0.5) / len(views), margin / 2, caption, ha="center", va="center", color="0.25",
+    for (x, y), view in zip(places, views):
+        draw_view(figure.add_axes([x, y + margin, 1 / columns, 1 / rows - margin]), **view)
+    for (x, y), caption in zip(places, captions):
+        figure.text(x + 0.5 / columns, y + margin / 2, caption, ha="center", va="center", color="0.25",
                     fontsize=10 * SCALE)  # fmt: skip
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")

@@ -8,7 +8,7 @@ import tempfile
 import textwrap
 import time
 
-from . import clean, comparison, gallery, machine, maps, paper, scaling
+from . import clean, comparison, gallery, machine, maps, paper, scaling, views
 from .programs import Failure, Programs, load_clouds
 from .report import ROOT, Report
 
@@ -16,6 +16,7 @@ SECTIONS = {
     "clean": ("Clean clouds", clean.section),
     "paper": ("The paper", paper.section),
     "comparison": ("Quality and peers", comparison.section),
+    "views": ("Scans", views.section),
     "maps": ("The map to the sphere", maps.section),
     "scaling": ("Scaling", scaling.section),
     "gallery": ("Gallery", gallery.section),

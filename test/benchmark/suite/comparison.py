@@ -7,6 +7,7 @@ from .programs import Failure, busy_cores, in_turn, is_sound, median_seconds
 
 OURS = "ours"
 FRONT = "CGAL advancing front"  # the fastest peer whose mesh has all points
+ORGANIZED = "PCL organized mesh"  # of neighbours in an image alone
 PEERS = {  # program and method
     FRONT: ("benchmark_peer_cgal", "advancing_front"),
     "CGAL advancing front, filled": ("benchmark_peer_cgal", "advancing_front_filled"),
@@ -14,6 +15,7 @@ PEERS = {  # program and method
     "CGAL alpha wrap": ("benchmark_peer_cgal", "alpha_wrap"),
     "PCL greedy projection": ("benchmark_peer_pcl", "gp3"),
     "PCL Poisson": ("benchmark_peer_pcl", "poisson"),
+    ORGANIZED: ("benchmark_peer_pcl", "organized"),
     "Open3D ball pivoting": ("benchmark_peer_open3d", "ball_pivoting"),
     "Open3D Poisson": ("benchmark_peer_open3d", "poisson"),
 }
@@ -48,10 +50,15 @@ def find_peers(context, labels=PEERS):
 
 
 def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60.0):
-    """A row for each method on one cloud, and its mesh if it made one; adds the parameters of the peers."""
-    programs = {OURS: context.programs.reconstruction, **{label: found for label, found in peers.items() if found}}
+    """A row for each method on one cloud, and its mesh if it made one; adds the parameters of the peers.
+
+    All get the points alone, but for the organized mesh, which gets the image: it is left out if there is none.
+    """
+    programs = {OURS: context.programs.reconstruction,
+                **{label: found for label, found in peers.items() if found and (label != ORGANIZED or cloud.image)}}
     meshes = [context.work / f"compare_{index}.ply" for index in range(len(programs))]
-    commands = [[program, PEERS[label][1], cloud.points, mesh] if label != OURS
+    commands = [[program, PEERS[label][1], cloud.image if label == ORGANIZED else cloud.points, mesh]
+                if label != OURS
                 else [program, cloud.points, mesh, "-quiet", "-json", "-", *options]
                 for (label, program), mesh in zip(programs.items(), meshes)]  # fmt: skip
     compared = []
@@ -67,7 +74,7 @@ def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60
         told = json.loads(output if label == OURS else output.splitlines()[-1])  # libraries print, too
         row.update(seconds=median_seconds(done), megabytes=told["peak_memory_bytes"] / 1e6)
         if label == OURS:
-            row["sound"] = is_sound(told)
+            row.update(sound=is_sound(told), view=told["view"] is not None)
         else:
             parameters[label] = {"method": label, "library": told["library"], "parameters": told["parameters"]}
         row.update(context.programs.measure(mesh, cloud))
@@ -81,14 +88,17 @@ def summarize(rows):
     for method in dict.fromkeys(row["method"] for row in rows):
         own = [row for row in rows if row["method"] == method]
         good = [row for row in own if row.get("sphere") and row["used"] == 100.0]
-        entry = {"method": method, "clouds": len(own), "spheres": len(good),
-                 "clean": sum(row["intersections"] == 0 for row in good)}  # fmt: skip
+        entry = {"method": method, "clouds": len(own), "meshes": sum("failure" not in row for row in own),
+                 "spheres": len(good), "clean": sum(row["intersections"] == 0 for row in good),
+                 "whole": sum(row.get("intersections") == 0 for row in own),
+                 "right": sum(row.get("right", False) for row in own)}  # fmt: skip
         for key in ("rms", "hausdorff", "seconds", "megabytes"):
             pairs = [(row.get(key), ours[row["model"]].get(key)) for row in own]
             ratios = [one / other for one, other in pairs if one and other]
             entry[key] = statistics.median(ratios) if ratios else None
-        edges = [row["edges"] for row in own if row.get("edges") is not None]
-        entry["edges"] = statistics.mean(edges) if edges else None
+        for key, average in (("edges", statistics.mean), ("used", statistics.median), ("bridges", statistics.median)):
+            known = [row[key] for row in own if row.get(key) is not None]
+            entry[key] = average(known) if known else None
         summary.append(entry)
     return summary
 

@@ -11,10 +11,14 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+
 from .quality import Mesh, Referee, compare
 
 # Exit code of our tools if too many triangles intersect. The mesh is written, and measured like others.
 NOT_USABLE = 3
+
+LARGE = 1e5  # coordinates [unit of the cloud]: beyond, single precision has steps of 1/128 and more
 
 
 class Failure(Exception):
@@ -114,6 +118,7 @@ class Cloud:
     name: str
     points: pathlib.Path
     truth: pathlib.Path | None = None
+    image: pathlib.Path | None = None  # the points in the order in which a sensor saw them, .pcd
 
 
 class Programs:
@@ -128,16 +133,35 @@ class Programs:
             raise Failure(f"there is no program '{path}'", "run tools/benchmark.sh, which builds it")
         return path if path.is_file() else None
 
-    def scan(self, name, noise=None, truth=True):
+    def _generate(self, shape, file, **options):
+        words = [word for name, value in options.items() if value for word in (f"-{name}", value)]
+        require([self.find("pcl_spherical_param_scan"), shape, file, *words])
+
+    def scan(self, name, noise=None, truth=True, views=None):
         """A generated scan, by SHAPE_POINTS or the name of a scan of the paper; made once."""
         shape, points = PAPER_SCANS.get(name, name).rsplit("_", 1)
-        name = f"{name}_noise_{noise}" if noise else name
+        name += "".join(f"_{option}_{value}" for option, value in (("noise", noise), ("views", views)) if value)
         cloud = Cloud(name, self.work / f"{name}.ply", self.work / f"{shape}_truth.ply" if truth else None)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
-            command = [self.find("pcl_spherical_param_scan"), shape, cloud.points]
-            for option, value in (("-points", points), ("-noise", noise), ("-truth", cloud.truth)):
-                command += [option, value] if value else []
-            require(command)
+            self._generate(shape, cloud.points, points=points, noise=noise, views=views, truth=cloud.truth)
+        return cloud
+
+    def view(self, name):
+        """What a sensor sees of a scene from one place, SCENE or SCENE_POINTS; made once. The sensor is the origin.
+
+        The coordinates of an airborne scan are too large for the single precision of PCL: they are less whole units
+        here, for all methods alike.
+        """
+        scene, _, points = name.partition("_")
+        files = (self.work / f"{name}{end}" for end in (".ply", "_truth.ply", ".pcd"))
+        cloud = Cloud(name, *files)
+        if not cloud.points.is_file():
+            self._generate(scene, cloud.image, points=points, truth=cloud.truth)
+            self._generate(scene, cloud.points, points=points)
+            low = Mesh.read(cloud.points).points.min(axis=0)
+            for path in (cloud.points, cloud.truth) if np.abs(low).max() > LARGE else ():
+                mesh = Mesh.read(path)
+                Mesh(mesh.points - np.floor(low), mesh.triangles).write(path)
         return cloud
 
     def reconstruct(self, cloud, mesh, *options):
