@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Measures: the paper's tables and figures, quality against truth, other methods on the same clouds,
-# time and memory over the number of points. Installs missing packages, builds, and writes tables,
-# plots, pictures and report.md to a folder.
+# Measures: the paper's tables and figures, quality against truth, other methods on the same clouds
+# and scans, time and memory over the number of points. Installs missing packages, builds, and
+# writes tables, plots, pictures and report.md to a folder.
 #
 #   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
-#                      [--only clean|paper|comparison|maps|scaling|gallery]
+#                      [--only clean|paper|comparison|views|maps|scaling|gallery]
 #                      [--clean DIR]... [--clean-list FILE] [--update-clean]
 #
 #   OUT           folder for the report
 #   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply;
 #                 and of real scans, scans/NAME.ply or .pcd. Without it, generated and Debian's scans
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
-#   --large       up to ten million points: 10 GB and some five minutes more
+#   --large       also ten million points, of a surface and airborne: 10 GB and some ten minutes more
 #   --only        one section alone; may be repeated
 #   --update-doc  also put the tables into README.md and doc, and the pictures into doc/gallery
 #   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list

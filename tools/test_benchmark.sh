@@ -12,7 +12,7 @@ rm -rf "$report"
 # Every table, plot and picture that the report links to is there.
 report_is_whole() {
   local section link links=0
-  for section in "The paper" "Quality and peers" "The map to the sphere" "Scaling" "Gallery"; do
+  for section in "The paper" "Quality and peers" "Scans" "The map to the sphere" "Scaling" "Gallery"; do
     grep -qxF "## $section" "$report/report.md" || return 1
   done
   while read -r link; do
@@ -25,11 +25,13 @@ report_is_whole() {
   [ "$links" -gt 0 ]
 }
 
-# Handles and openings are counted, and times beside busy processes measured.
+# Handles, openings and bridges are counted, and times beside busy processes measured.
 tables_are_right() {
-  cat "$report"/{handles,scans,race}.csv
+  cat "$report"/{handles,views,merged,scans,race}.csv
   grep -q '^| chair_2000 | ours | 4 | 4 | yes | 0 |' "$report/report.md" &&
-    grep -q '^| rabbit | 12,000 | ours | yes | 100.00 | 1 | 4 | 0 | 0 |' "$report/report.md" &&
+    grep -qE '^\| desk_[0-9]+ \| [0-9,]+ \| ours \| [0-9.]+ \| 0 \| [0-9.]+ \| [0-9.]+ \|' "$report/report.md" &&
+    grep -qE '^\| animal \| 0.5 \| [0-9,]+ \| ours \| yes \| 0 \|' "$report/report.md" &&
+    grep -q '^| rabbit | 12,000 | ours | no | yes | 100.00 | 1 | 4 | 0 | 0 |' "$report/report.md" &&
     grep -qxF model,ours,single,gain,ours_busy,single_busy "$report/race.csv"
 }
 
