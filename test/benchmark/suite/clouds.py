@@ -33,8 +33,8 @@ class Row:
 
 ROWS = [
     Row("desk", "", (55, 25), axes=FORWARD, seen=(0, 0)),
-    Row("yard", "", (30, 35), seen=(30, 35)),
-    Row("town", "", (30, 35), seen=(30, 35)),
+    Row("yard", "", (30, 50), seen=(30, 50)),
+    Row("town", "", (30, 50), seen=(30, 50)),
     Row("jaw", "", (60, 15), axes=FORWARD, seen=(0, 0)),
     Row("horse", "", (120, 10), PETSC + "horse.ply.bz2"),
     Row("dinosaur", "", (20, 10), OPENCV + "parasaurolophus_low_normals2.ply", X_UP),

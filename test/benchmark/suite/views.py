@@ -8,7 +8,7 @@ VIEW_PEERS = (FRONT, ORGANIZED, "PCL greedy projection", "Open3D ball pivoting",
 MERGED_PEERS = (FRONT, "PCL Poisson", "Open3D Poisson")
 # Scans, quick and in full.
 SCENES = (("desk_5000",), ("desk", "yard", "town", "jaw"))
-SHAPES = (("chair_2000",), ("animal_20000", "hand_20000", "bird_20000", "head_20000", "chair_20000"))
+SHAPES = (("animal_2000",), ("animal_20000", "hand_20000", "bird_20000", "head_20000", "chair_20000"))
 NOISES = ((0.5,), (0.5, 1.5))  # along the rays [spacings]
 CAMERAS = 8
 TIMEOUT = 300.0  # seconds of a method
