@@ -35,8 +35,7 @@ of_tests() { # the build of tools/test.sh, where the examples look for that of c
   rm -rf "$installed_by_catkin"
   # catkin's setup files go where the prefix was when it was configured.
   configure_release ON -DSPHERICAL_PARAM_BUILD_ROS=ON -DCMAKE_INSTALL_PREFIX="$installed_by_catkin" &&
-    cmake --build build/release -j "$jobs" && cmake --install build/release >/dev/null &&
-    ln -sf /usr/lib/*/libpcl_ros_filters.so "$installed_by_catkin/lib/"
+    cmake --build build/release -j "$jobs" && cmake --install build/release >/dev/null
 }
 
 by_colcon() { # <version or ""> <folder>
