@@ -10,6 +10,8 @@ example of doc/guide.md, below HOME. The meshes themselves are tested elsewhere.
 import contextlib
 import os
 import pathlib
+import queue
+import re
 import signal
 import socket
 import subprocess
@@ -338,6 +340,32 @@ class Ros1(unittest.TestCase):
         cloud = message_of(points)
         self.publisher("/scan/points").publish(cloud)
         assert_mesh(self, watch.one("mesh"), cloud, points)
+
+    def test_sequence_of_a_depth_camera_is_meshed_cloud_by_cloud_in_the_same_memory(self):
+        rospy.set_param("/spherical_param", yaml.safe_load(DEPTH_CAMERA_FILE.read_text()))
+        # malloc gives back what is freed, so that the memory is what is in use.
+        node = self.run_node(env=os.environ | {"MALLOC_TRIM_THRESHOLD_": "131072"})
+
+        def memory():  # [MB]
+            status = pathlib.Path(f"/proc/{node.pid}/status").read_text()
+            return int(re.search(r"VmRSS:\s*(\d+) kB", status)[1]) / 1024
+
+        stamps = queue.Queue()
+        # As bytes: Python takes longer to read a mesh than the node to make it.
+        self.addCleanup(rospy.Subscriber("/spherical_param/mesh", rospy.AnyMsg, lambda mesh: stamps.put(
+            Header().deserialize(mesh._buff).stamp)).unregister)
+        clouds, publisher, after = [seen_by_a_camera(320, number) for number in range(30)], self.publisher(), []
+        for some in clouds[:10], clouds[10:]:
+            begin = time.monotonic()
+            for cloud in some:
+                publisher.publish(cloud)
+                self.assertEqual(stamps.get(timeout=TIMEOUT), cloud.header.stamp)
+            speed = len(some) / (time.monotonic() - begin)
+            time.sleep(1.0)  # the node still sends the other messages
+            after.append(memory())
+        print(f"{speed:.1f} clouds of {cloud.width * cloud.height} points a second; {after[0]:.0f} MB after 10, "
+              f"{after[1]:.0f} MB after 30")
+        wait_for(lambda: memory() < 1.05 * after[0], "memory as after 10 clouds")
 
     def test_parameters_of_the_depth_camera_arrive_and_are_those_of_the_page(self):
         def parameters(*words):
