@@ -62,25 +62,6 @@ def draw(path, size, views, *options):
     print(f"{path}: {os.path.getsize(path) // 1024} KB", flush=True)
 
 
-def beside(path, *pictures):
-    """Puts pictures of the same height side by side."""
-    drawing.save(path, Image.fromarray(np.hstack([Image.open(picture).convert("RGB") for picture in pictures])))
-
-
-def demo():
-    cloud = scan("desk", 76800)
-    run("reconstruction", cloud, "desk_mesh.ply")
-    draw("desk.png", "1080x400", [(cloud, "what a depth camera sees"), ("desk_mesh.ply", "its mesh")],
-         f"--view={CAMERA}")  # fmt: skip
-    cloud = scan("hand", 20000)
-    mesh(cloud, "mesh", "-sphere", "sphere.ply")
-    draw("whole.png", "900x400", [(cloud, "point cloud"), ("mesh.ply", "closed mesh"),
-         ("sphere.ply", "its map to the sphere")], "--colors=sphere.ply", "--view=25,20")  # fmt: skip
-    mesh(scan("chair", 8000), "chair_mesh")
-    draw("chair.png", "280x400", [("chair_mesh.ply", "a chair: 4 handles")], "--view=35,15")
-    beside(GITHUB / "demo.png", "desk.png", "whole.png", "chair.png")
-
-
 def remesh():
     cloud = scan("hand", 6000)
     mesh(cloud, "mesh")
@@ -196,7 +177,7 @@ def scans():
          *["--view=25,15"] * len(shapes), f"--view={CAMERA}")  # fmt: skip
 
 
-ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera,
+ALL = [remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera,
        recipes, scans]  # fmt: skip
 
 
