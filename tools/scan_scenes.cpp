@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <utility>
 
@@ -34,13 +33,13 @@ double normal(std::mt19937_64& random) {
 
 /// A sensor that measures along rays, one for each place of an image.
 struct Sensor {
-  bool is_panorama;      ///< all around z, else it looks along z
-  double low, high;      ///< of a panorama, elevations [rad]
-  double focal_length;   ///< of a camera, in widths; its image is 4 x 3
-  double reach;          ///< what is farther is not seen
-  double noise;          ///< standard deviation of the depth at depth 1
-  double growth;         ///< power of the depth with which the noise, and the step, grow
-  double step = 0.0;     ///< of depths at depth 1; 0: none
+  bool is_panorama = false;      ///< all around z, else it looks along z
+  double low = 0.0, high = 0.0;  ///< of a panorama, elevations [rad]
+  double focal_length = 1.0;     ///< of a camera, in widths; its image is 4 x 3
+  double max_range = 1.0;        ///< what is farther is not seen
+  double noise = 0.0;            ///< standard deviation of the depth at depth 1
+  double noise_power = 0.0;      ///< of the depth, with which the noise, and the step, grow
+  double step = 0.0;             ///< of depths at depth 1; 0: none
   double flying = 0.0;   ///< fraction of the points before a jump in depth that lie in the jump
   double missing = 0.0;  ///< fraction of points without a depth
 };
@@ -96,12 +95,12 @@ Matrix3d axesToward(const Vector3d& place, const Vector3d& target) {
 
 /// The depth along a ray, and the surface there; NaN and -1: none. Sphere tracing (J. C. Hart,
 /// 1996).
-std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, double reach) {
+std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, double max_range) {
   constexpr int most_steps = 2000;  // along a surface that the ray grazes
   const double length = ray.norm();
-  double depth = 1e-3 * reach;
+  double depth = 1e-3 * max_range;
   int nearest = 0;
-  for (int step = 0; step < most_steps && depth < reach; ++step) {
+  for (int step = 0; step < most_steps && depth < max_range; ++step) {
     const Vector3d p = depth * ray;
     double least = std::numeric_limits<double>::max();
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -115,7 +114,7 @@ std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, doub
       break;
     depth += 0.7 * least / length;  // because it is not quite the distance
   }
-  if (depth < reach)
+  if (depth < max_range)
     return {depth, nearest};
   return {no_depth, -1};
 }
@@ -124,7 +123,7 @@ std::pair<double, int> trace(const Surfaces& surfaces, const Vector3d& ray, doub
 void measure(const Sensor& sensor, const Grid& grid, double factor, std::mt19937_64& random,
              Eigen::VectorXd& depths) {
   const Eigen::VectorXd clean = depths;
-  const double some = std::min(1.0, factor);
+  const double fraction = std::min(1.0, factor);
   for (Eigen::Index i = 0; i < depths.size(); ++i) {
     double nearest = clean[i];
     const Eigen::Index column = i % grid.columns;
@@ -135,14 +134,14 @@ void measure(const Sensor& sensor, const Grid& grid, double factor, std::mt19937
       if (is_inside && clean[other] < nearest)
         nearest = clean[other];
     // The same numbers are drawn for each point, whatever becomes of them.
-    const bool is_flying = uniform(random) < some * sensor.flying;
+    const bool is_flying = uniform(random) < fraction * sensor.flying;
     const double between = uniform(random);
     const double error = normal(random);
-    const bool is_missing = uniform(random) < some * sensor.missing;
+    const bool is_missing = uniform(random) < fraction * sensor.missing;
     double depth = clean[i];
     if (is_flying && depth - nearest > 0.03 * depth)
       depth = nearest + between * (depth - nearest);
-    const double growth = factor * std::pow(depth, sensor.growth);
+    const double growth = factor * std::pow(depth, sensor.noise_power);
     depth += sensor.noise * growth * error;
     const double step = sensor.step * growth;
     if (step > 0.0)
@@ -154,15 +153,15 @@ void measure(const Sensor& sensor, const Grid& grid, double factor, std::mt19937
 /// The triangles between neighbouring rays that hit the same thing, of which none is seen at less
 /// than 4 degrees.
 ///
-/// \param clean what the rays hit. \param things what each hit; -1: nothing.
+/// \param clean what the rays hit. \param labels what each hit; -1: nothing.
 /// \param ray of a place; triangles face against it.
-TruthMesh truthOf(const Positions& clean, const std::vector<int>& things, const Grid& grid,
+TruthMesh truthOf(const Positions& clean, const std::vector<int>& labels, const Grid& grid,
                   bool is_around, const std::function<Vector3d(Eigen::Index)>& ray) {
   std::vector<Index> triangles;
   const auto add = [&](const std::array<Eigen::Index, 3>& corners) {
     for (const Eigen::Index corner : corners) {
-      const int thing = things[static_cast<std::size_t>(corner)];
-      if (thing < 0 || thing != things[static_cast<std::size_t>(corners[0])])
+      const int thing = labels[static_cast<std::size_t>(corner)];
+      if (thing < 0 || thing != labels[static_cast<std::size_t>(corners[0])])
         return;
     }
     const auto corner = [&](std::size_t k) { return clean.col(corners[k]); };
@@ -179,7 +178,7 @@ TruthMesh truthOf(const Positions& clean, const std::vector<int>& things, const 
       add({a, a + grid.columns, b + grid.columns});
       add({a, b + grid.columns, b});
     }
-  std::vector<Index> vertex_of(things.size(), -1);
+  std::vector<Index> vertex_of(labels.size(), -1);
   Index count = 0;
   for (const Index corner : triangles)
     if (vertex_of[static_cast<std::size_t>(corner)] < 0)
@@ -198,7 +197,7 @@ TruthMesh truthOf(const Positions& clean, const std::vector<int>& things, const 
 SceneScan scanSurfaces(const Surfaces& surfaces, const Sensor& sensor, const ScanOptions& options) {
   const Grid grid = gridOf(sensor, options.points);
   const auto n = static_cast<Eigen::Index>(grid.size());
-  std::vector<int> things(grid.size());
+  std::vector<int> labels(grid.size());
   Eigen::VectorXd depths(n);
   SceneScan result;
   result.scan = {Positions(3, n), Positions(3, n), static_cast<std::size_t>(grid.rows)};
@@ -206,16 +205,16 @@ SceneScan scanSurfaces(const Surfaces& surfaces, const Sensor& sensor, const Sca
   const auto ray = [&](Eigen::Index i) { return rayOf(sensor, grid, i); };
   forEach(grid.size(), [&](std::size_t place) {
     const auto i = static_cast<Eigen::Index>(place);
-    const auto [depth, thing] = trace(surfaces, ray(i), sensor.reach);
+    const auto [depth, thing] = trace(surfaces, ray(i), sensor.max_range);
     depths[i] = depth;
-    things[place] = thing;
+    labels[place] = thing;
     clean.col(i) = depth * ray(i);
     result.scan.normals.col(i).setZero();
     if (thing >= 0)
       result.scan.normals.col(i) =
           gradientAt(clean.col(i), surfaces[static_cast<std::size_t>(thing)]).normalized();
   });
-  result.truth = truthOf(clean, things, grid, sensor.is_panorama, ray);
+  result.truth = truthOf(clean, labels, grid, sensor.is_panorama, ray);
   std::mt19937_64 random(options.seed);
   measure(sensor, grid, options.noise, random, depths);
   for (Eigen::Index i = 0; i < n; ++i)
@@ -248,7 +247,14 @@ SceneScan scanDesk(const ScanOptions& options) {
       [](const Vector3d& p) { return 0.52 - p.x(); },
       [](const Vector3d& p) { return 0.72 + p.z(); }};
   const Vector3d camera(-0.70, 0.08, 0.50);
-  const Sensor sensor = {false, 0.0, 0.0, 0.95, 4.0, 0.0015, 2.0, 0.0025, 0.3, 0.01};
+  Sensor sensor;
+  sensor.focal_length = 0.95;
+  sensor.max_range = 4.0;
+  sensor.noise = 0.0015;
+  sensor.noise_power = 2.0;
+  sensor.step = 0.0025;
+  sensor.flying = 0.3;
+  sensor.missing = 0.01;
   return scanSurfaces(seenFrom(camera, axesToward(camera, {0.06, 0.02, 0.06}), room), sensor,
                       options);
 }
@@ -296,7 +302,12 @@ SceneScan scanYard(const ScanOptions& options) {
         const double away = crown(p);
         return std::min(trunk(p), away > 0.5 ? away - 0.25 : 0.6 * (away - leaves(p)));
       }};
-  const Sensor sensor = {true, -pi / 3.0, 35.0 / 180.0 * pi, 0.0, 20.0, 0.003, 0.0};
+  Sensor sensor;
+  sensor.is_panorama = true;
+  sensor.low = -pi / 3.0;
+  sensor.high = 35.0 / 180.0 * pi;
+  sensor.max_range = 20.0;
+  sensor.noise = 0.003;
   return scanSurfaces(seenFrom({0.0, 0.0, 1.6}, Matrix3d::Identity(), yard), sensor, options);
 }
 
@@ -328,7 +339,11 @@ SceneScan scanJaw(const ScanOptions& options) {
       {arc(middle + Vector3d(0.0, 9.0, 0.0), Vector3d::UnitY(), x, 26.0, 5.5, 0.4 * pi), 5.0});
   gum.push_back({ellipsoid({0.0, -10.0, -12.0}, {24.0, 24.0, 5.0}), 6.0});
   const Vector3d place(6.0, -40.0, 80.0);
-  const Sensor sensor = {false, 0.0, 0.0, 1.35, 300.0, 0.015, 0.0, 0.0, 0.0, 0.005};
+  Sensor sensor;
+  sensor.focal_length = 1.35;
+  sensor.max_range = 300.0;
+  sensor.noise = 0.015;
+  sensor.missing = 0.005;
   return scanSurfaces(
       seenFrom(place, axesToward(place, {0.0, -2.0, 0.0}), {body(gum), body(teeth)}), sensor,
       options);
@@ -441,16 +456,16 @@ SceneScan scanTown(const ScanOptions& options) {
   const Grid grid = {static_cast<Eigen::Index>(width / mesh),
                      static_cast<Eigen::Index>(4.0 * spacing * static_cast<double>(lines) / mesh)};
   Positions clean(3, static_cast<Eigen::Index>(grid.size()));
-  std::vector<int> things(grid.size());
+  std::vector<int> labels(grid.size());
   for (Eigen::Index i = 0; i < clean.cols(); ++i) {
     // Rows from the far side on, as a camera above has them.
     const double x = mesh * static_cast<double>(i % grid.columns);
     const double y = mesh * static_cast<double>(grid.rows - 1 - i / grid.columns);
     const Below place = below(x, y);
     clean.col(i) = Vector3d(x, y, place.height) + corner;
-    things[static_cast<std::size_t>(i)] = place.thing;
+    labels[static_cast<std::size_t>(i)] = place.thing;
   }
-  result.truth = truthOf(clean, things, grid, false,
+  result.truth = truthOf(clean, labels, grid, false,
                          [](Eigen::Index) -> Vector3d { return -Vector3d::UnitZ(); });
   return result;
 }
@@ -481,7 +496,9 @@ SceneScan scanScene(const ScanOptions& options) {
 Scan scanFromViews(const ScanOptions& options) {
   constexpr double away = 3.0;
   const Surfaces shape = {findShape(options.shape).distance};
-  Sensor sensor = {false, 0.0, 0.0, 1.8, 2.0 * away, 0.0, 0.0};
+  Sensor sensor;
+  sensor.focal_length = 1.8;
+  sensor.max_range = 2.0 * away;
   std::vector<std::pair<Vector3d, Matrix3d>> cameras;
   for (int i = 0; i < options.views; ++i) {
     const double azimuth = 2.0 * pi * i / options.views;
@@ -514,6 +531,8 @@ Scan scanFromViews(const ScanOptions& options) {
   const std::vector<Scan> scans =
       images(static_cast<std::size_t>(static_cast<double>(options.points) / fraction));
   const auto n = static_cast<Eigen::Index>(seen(scans));
+  if (n == 0)
+    throw InvalidInput("no ray hits the shape; take more points, or fewer views");
   // A ray's distance from the next one, where the shape is.
   const double spacing =
       away / sensor.focal_length * 0.75 / static_cast<double>(scans.front().rows);
@@ -523,7 +542,9 @@ Scan scanFromViews(const ScanOptions& options) {
   Eigen::Index i = 0;
   for (std::size_t view = 0; view < scans.size(); ++view) {
     const auto& [place, axes] = cameras[view];
-    const Vector3d error = 0.5 * sigma * Vector3d(normal(random), normal(random), normal(random));
+    Vector3d error;  // not in the arguments of a call, whose order is the compiler's
+    for (int axis = 2; axis >= 0; --axis)
+      error[axis] = 0.5 * sigma * normal(random);
     for (Eigen::Index k = 0; k < scans[view].points.cols(); ++k) {
       const Vector3d p = scans[view].points.col(k);
       if (!p.allFinite())

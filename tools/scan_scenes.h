@@ -23,7 +23,7 @@ const std::vector<Scene>& allScenes();
 
 struct SceneScan {
   Scan scan;
-  TruthMesh truth;  ///< as fine as the rays: no triangle bridges a jump in depth
+  TruthMesh truth;  ///< as fine as the rays; no triangle is seen at less than 4 degrees
 };
 
 /// \param options `points`: about; `noise`: times that of such a sensor, 0 ... 100.
@@ -32,7 +32,8 @@ SceneScan scanScene(const ScanOptions& options);
 
 /// What depth cameras around a shape see, merged: `options.noise` is the standard deviation along
 /// the rays, relative to the distance of neighbouring rays; that of the place of each camera is
-/// half as much along each axis. \throw InvalidInput
+/// half as much along each axis. \throw InvalidInput if the shape has openings, which are not cut,
+/// or no ray hits it.
 ///
 /// \param options `views`: cameras, at least 1; `points`: of all, about.
 Scan scanFromViews(const ScanOptions& options);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <random>
 #include <unordered_map>
@@ -146,6 +145,7 @@ const Shape& findShape(const std::string& name) {
 // cells, which the tests check for every shape.
 TruthMesh referenceMesh(const std::string& name, int cells) {
   const Shape& shape = findShape(name);
+  const auto is_cut = [&](const Vector3d& p) { return shape.opening && shape.opening(p) <= 0.0; };
   const double step = 1.28 / cells;
   const auto position = [&](const Vector3d& node) -> Vector3d {
     return step * (node + Vector3d(0.27, 0.41, 0.13)).array() - 0.64;
@@ -185,7 +185,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
       const Vector3i node = low + (i / 3 % 2) * Vector3i::Unit((axis + 1) % 3) +
                             (i / 6) * Vector3i::Unit((axis + 2) % 3);
       const auto where = crossing(node, axis);
-      if (where && shape.opening(*where) > 0.0)
+      if (where && !is_cut(*where))
         sum += where->homogeneous();
       else if (where)
         is_open = true;
@@ -203,7 +203,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
   for (const Vector3i& cube : cubes)
     for (int axis = 0; axis < 3; ++axis) {
       const auto where = crossing(cube, axis);
-      if (!where || shape.opening(*where) <= 0.0)
+      if (!where || is_cut(*where))
         continue;
       const int turn = value(cube) < 0.0 ? 1 : 2;  // counter-clockwise seen from outside
       const Vector3i a = Vector3i::Unit((axis + turn) % 3);
@@ -295,7 +295,7 @@ Scan sliceShape(const ScanOptions& options) {
     for (int k = 0; k < 3; ++k) {
       const Index a = mesh.triangles(k, t);
       const Index b = mesh.triangles((k + 1) % 3, t);
-      // Each edge is a side of two triangles, once upward.
+      // Each edge is a side of two triangles, once upward; on a boundary some are missed.
       for (double plane = std::ceil(height(a)); plane < height(b); ++plane) {
         const double fraction = (plane - height(a)) / (height(b) - height(a));
         points.emplace_back(mesh.vertices.col(a) +

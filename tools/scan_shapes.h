@@ -16,8 +16,7 @@ struct Shape {
   std::string name;         ///< lower case
   std::string description;  ///< one line without a full stop
   Distance distance;
-  /// Negative where the surface is cut away.
-  Distance opening = [](const Eigen::Vector3d&) { return 1.0; };
+  Distance opening = {};  ///< negative where the surface is cut away; empty: nowhere
 };
 
 const std::vector<Shape>& allShapes();
@@ -31,7 +30,8 @@ struct ScanOptions {
   std::string shape = "head";  ///< name of a shape, or of a scene
   std::size_t points = 5000;   ///< 4 ... kMaxScanPoints
   /// Half the width of the uniform noise along the normal, relative to a point's mean distance to
-  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100.
+  /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100. Of scenes and
+  /// views, see there.
   double noise = 0.0;
   std::uint64_t seed = 1;
   int views = 0;   ///< cameras of scanFromViews(), 0 ... 100
@@ -40,7 +40,7 @@ struct ScanOptions {
 
 struct Scan {
   Positions points;      ///< 3 x n, column i = point i; NaN where a sensor sees nothing
-  Positions normals;     ///< 3 x n, unit, outward, without noise; 0 where nothing is seen
+  Positions normals;     ///< 3 x n, unit, outward, without noise; 0 where no ray hits
   std::size_t rows = 1;  ///< of an image; 1: the points have no order
 };
 

@@ -15,6 +15,7 @@ folder="$(dirname "${BASH_SOURCE[0]}")"
 lists=("$folder/packages.txt")
 last='$'
 if [ "$*" = --demo ]; then
+  grep -q '^# The demo needs no more' "${lists[0]}" || fail "${lists[0]} does not say what the demo needs"
   last='/^# The demo needs no more/'
   shift
 fi
@@ -25,7 +26,7 @@ done
 command -v dpkg-query >/dev/null ||
   fail "this is not Debian: install what ${lists[*]} name by other means"
 
-mapfile -t wanted < <(cat "${lists[@]}" | sed "${last}q" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
+mapfile -t wanted < <(sed "${last}q" "${lists[@]}" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
 
 # dpkg-query fails for names that it never heard of; those are missing as well.
 installed="$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |

@@ -53,10 +53,12 @@ OptionTable optionsOf(Settings& settings) {
                    "relative to that of its sensor (1 by default)",
                    settings.scan.noise, 0, 100),
       numberOption("seed", "seed of the random placement and noise", settings.scan.seed, 0, 1e15),
-      numberOption("views",
-                   "what this number of depth cameras around the shape see, merged; the noise is "
-                   "along their rays, and half as much is their error of registration",
-                   settings.scan.views, 0, 100),
+      numberOption(
+          "views",
+          "what this number of depth cameras around the shape see, merged; the noise, "
+          "relative to the distance of neighbouring rays, is along them, and half as much is "
+          "the error of registration",
+          settings.scan.views, 0, 100),
       numberOption("slices", "contours in this number of planes, as of a tomograph",
                    settings.scan.slices, 0, 1000),
       flagOption("normals", "write the normals of the surface, too", settings.normals),
@@ -107,6 +109,9 @@ bool parse(const std::string& name, const CommandLine& command_line, Settings& s
   if (is_scene && (scan.views > 0 || scan.slices > 0))
     throw UsageError(inQuotes(scan.shape) + " is a scene, which one sensor sees",
                      "leave -views and -slices out, or take a shape");
+  if (scan.views > 0 && findShape(scan.shape).opening)
+    throw UsageError(inQuotes(scan.shape) + " has openings, which -views does not cut",
+                     "leave -views out, or take a closed shape");
   if (scan.slices > 0)
     for (const char* const other : {"views", "noise", "points", "seed"})
       if (command_line.has(other))

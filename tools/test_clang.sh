@@ -52,11 +52,12 @@ same_mesh_with_libcxx() {
   local build
   build_release pcl_spherical_param_scan pcl_spherical_param_reconstruction || return 1
   for build in release libcxx; do
-    "build/$build/bin/pcl_spherical_param_scan" hand "build/$build/scan.ply" -points 5000 &&
+    "build/$build/bin/pcl_spherical_param_scan" animal "build/$build/views.ply" -views 3 -noise 1 -points 2000 &&
+      "build/$build/bin/pcl_spherical_param_scan" hand "build/$build/scan.ply" -points 5000 &&
       "build/$build/bin/pcl_spherical_param_reconstruction" "build/$build/scan.ply" "build/$build/mesh.ply" ||
       return 1
   done
-  cmp build/{release,libcxx}/scan.ply && cmp build/{release,libcxx}/mesh.ply
+  cmp build/{release,libcxx}/views.ply && cmp build/{release,libcxx}/scan.ply && cmp build/{release,libcxx}/mesh.ply
 }
 
 check "set-up" tools/setup.sh || finish

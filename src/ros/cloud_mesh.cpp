@@ -40,7 +40,7 @@ void checkLayout(const pcl::PCLPointCloud2& cloud, std::size_t max_points) {
   if (max_points > 0 && points > max_points)
     throw InvalidInput("the cloud has " + std::to_string(points) +
                        " points, more than max_points, " + std::to_string(max_points) +
-                       "; thin it out (VoxelGrid), or raise max_points");
+                       "; thin it out, or raise max_points");
   if (cloud.is_bigendian)
     throw InvalidInput("the cloud is big-endian; publish it with is_bigendian false");
   const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
@@ -216,7 +216,7 @@ Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
     outcome.status = Status::Cancelled;
     outcome.message = "cancelled; send the cloud again";
   } catch (const std::bad_alloc&) {
-    outcome.message = "out of memory; thin the cloud out (VoxelGrid), or lower max_points";
+    outcome.message = "out of memory; thin the cloud out, or lower max_points";
   } catch (const std::exception& error) {
     outcome.message = error.what();
   }

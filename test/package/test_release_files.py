@@ -64,6 +64,9 @@ class ReleaseFiles(unittest.TestCase):
         made = next(step["run"] for step in steps if step.get("name") == "Packages").splitlines()
         commands = "\n".join(made[1:])
         self.assertTrue(f"```sh\n{commands}\n```" in (ROOT / "doc/guide.md").read_text(), commands)
+        steps = self.workflow("ci")["jobs"]["ros2"]["steps"]
+        build = next(step["run"] for step in steps if "guide" in step.get("name", "")).splitlines()[1]
+        self.assertIn(f"\n{build}\n", (ROOT / "doc/guide.md").read_text())
 
     @staticmethod
     def workflow(name):

@@ -149,7 +149,7 @@ class Programs:
     def view(self, name):
         """What a sensor sees of a scene from one place, SCENE or SCENE_POINTS; made once. The sensor is the origin.
 
-        The coordinates of an airborne scan are too large for the single precision of PCL: they are less whole units
+        The coordinates of an airborne scan are too large for the single precision of PCL: whole units are subtracted from them
         here, for all methods alike.
         """
         scene, _, points = name.partition("_")

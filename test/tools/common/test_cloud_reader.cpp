@@ -218,6 +218,16 @@ TEST_F(CloudReader, TheViewpointOfPcdIsTheOriginOnlyWithRowsOrIfItIsApart) {
   EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\n", 1.0), std::nullopt);
 }
 
+TEST_F(CloudReader, TheRowsOfPcdAreKept) {
+  const auto rows_of = [&](const std::string& size) {
+    return read("a.pcd", "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + size +
+                             "POINTS 2\nDATA ascii\n0 0 0\nnan nan nan\n")
+        .rows;
+  };
+  EXPECT_EQ(rows_of("WIDTH 1\nHEIGHT 2\n"), 2U);
+  EXPECT_EQ(rows_of("WIDTH 2\n"), 1U);
+}
+
 /// One value a field.
 std::string pcdOf(const std::string& fields, const std::string& sizes, const std::string& types,
                   const std::string& points, const std::string& data) {
