@@ -26,7 +26,7 @@ def _measure(context, shape, n):
     seconds = statistics.median(processes)
     return {"scan": shape, "points": n, "seconds": seconds, "throughput": n / seconds,
             "unit": 1e9 * seconds / (n * math.log2(n)), "bytes": report["peak_memory_bytes"] / n,
-            "intersections": report["self_intersections"],
+            "intersections": sum(one["self_intersections"] for one in report.get("parts", [report])),
             **{stage: statistics.median(run[stage] for run in stages) for stage in stages[0]}}  # fmt: skip
 
 
