@@ -106,7 +106,8 @@ Vector3d gradientAt(const Vector3d& p, const Distance& distance) {
 }
 
 void forEach(std::size_t count, const std::function<void(std::size_t)>& work) {
-  internal::forEachIndex(count, internal::threadCount(0, count), {}, work);
+  internal::forEachIndex(count, internal::threadCount(0, count), {},
+                         [&](Index i) { work(static_cast<std::size_t>(i)); });
 }
 
 double uniform(std::mt19937_64& random) {
