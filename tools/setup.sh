@@ -11,6 +11,10 @@ fail() {
   exit 1
 }
 
+if [ "$*" = -h ] || [ "$*" = --help ]; then
+  sed -n -e '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  exit 0
+fi
 folder="$(dirname "${BASH_SOURCE[0]}")"
 lists=("$folder/packages.txt")
 last='$'
@@ -20,7 +24,7 @@ if [ "$*" = --demo ]; then
   shift
 fi
 for name in "$@"; do
-  [ -f "$folder/packages-$name.txt" ] || fail "there is no list $folder/packages-$name.txt"
+  [ -f "$folder/packages-$name.txt" ] || fail "there is no list $folder/packages-$name.txt; -h says what to give"
   lists+=("$folder/packages-$name.txt")
 done
 command -v dpkg-query >/dev/null ||

@@ -81,10 +81,10 @@ class BadInput(ToolTest):
         os.symlink("in.ply", "link.ply")
         os.link("in.ply", "hard.ply")
         self.check_ends_refused({
-            "reconstruction": {"'in\n.las' out.ply": "'in?.las'", "- out.ply": "'-' has an extension",
+            "reconstruction": {"'in\n.las' out.ply": "'in?.las'", "- out.ply": "'-' has no extension",
                                "in.ply link.ply": "would overwrite", "in.ply hard.ply": "would overwrite"},
             "reconstruction in.xyz": {
-                "out": "'out' has an extension", "out.ply -sphere ''": "-sphere",
+                "out": "'out' has no extension", "out.ply -sphere ''": "-sphere",
                 "./a.obj -sphere a.obj": "would overwrite", "out_%03d.ply -parts all": "is a pattern for several parts",
                 "out.ply -sphere s%03d.ply": "is a pattern, but the output is one file",
                 "out_%03d.ply -json j_%03d.json": "is a pattern, but one report has all parts"},

@@ -133,11 +133,13 @@ FileFormat requireFormat(const std::string& path, FileUse use) {
   if (format != nullptr && isUsable(*format, use)) {
     return format;
   }
-  throw UsageError(inQuotes(path) + " has an extension that no " +
-                       (use == FileUse::ReadCloud    ? "points are read from"
-                        : use == FileUse::WriteCloud ? "points are written to"
-                                                     : "meshes are written to"),
-                   "use one of " + extensionsFor(use));
+  throw UsageError(
+      inQuotes(path) +
+          (extensionOf(path).empty() ? " has no extension that " : " has an extension that no ") +
+          (use == FileUse::ReadCloud    ? "points are read from"
+           : use == FileUse::WriteCloud ? "points are written to"
+                                        : "meshes are written to"),
+      "use one of " + extensionsFor(use));
 }
 
 }  // namespace spherical_param::tools

@@ -112,7 +112,8 @@ std::int64_t pointCount(const InputFile& file, Entries& entries) {
     failContent(file.path(), "it has no points");
   }
   if (width * height != points) {
-    failContent(file.path(), "POINTS of its header is not WIDTH times HEIGHT");
+    failContent(file.path(), "POINTS of its header is " + std::to_string(points) + ", not WIDTH " +
+                                 std::to_string(width) + " times HEIGHT " + std::to_string(height));
   }
   return points;
 }
