@@ -7,7 +7,7 @@ import concurrent.futures
 import os
 import pathlib
 
-from .programs import Cloud, Failure, is_sound
+from .programs import Cloud, Failure, is_sound, surfaces_of
 
 LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
 NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
@@ -55,7 +55,7 @@ def _measure(context, path):
     except Failure as failure:
         return {}, failure.args[0]
     mesh.unlink()
-    surfaces = told.get("parts", [told])
+    surfaces = surfaces_of(told)
     numbers = (told["points"], len(surfaces), sum(one["boundary_loops"] for one in surfaces),
                sum(one["genus"] or 0 for one in surfaces), sum(map(len, told["left_out"].values())),
                sum(one["left_out_triangles"] for one in surfaces))  # fmt: skip

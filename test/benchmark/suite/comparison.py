@@ -52,7 +52,8 @@ def find_peers(context, labels=PEERS):
 def compare(context, cloud, peers, parameters, options=(), repeats=1, timeout=60.0):
     """A row for each method on one cloud, and its mesh if it made one; adds the parameters of the peers.
 
-    All get the points alone, but for the organized mesh, which gets the image: it is left out if there is none.
+    All get the points alone, but for the organized mesh, which gets the image. It is left out where the cloud has no such
+    file, and fails where the file is no image: an airborne scan.
     """
     programs = {OURS: context.programs.reconstruction,
                 **{label: found for label, found in peers.items() if found and (label != ORGANIZED or cloud.image)}}

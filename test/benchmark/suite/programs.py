@@ -95,6 +95,11 @@ def stage_seconds(report):
     return seconds
 
 
+def surfaces_of(report):
+    """The reports of its surfaces: of one surface the report itself."""
+    return report.get("parts", [report])
+
+
 def is_sound(report):
     """By the verdict of our tool."""
     return report["usable"] and not report["failures"] and not any(one["is_fault"] for one in report["findings"])

@@ -4,7 +4,7 @@ import math
 import statistics
 
 from .machine import memory
-from .programs import stage_seconds
+from .programs import stage_seconds, surfaces_of
 
 BYTES_A_POINT = 1500  # more than the product takes: what does not fit is not tried
 
@@ -26,7 +26,7 @@ def _measure(context, shape, n):
     seconds = statistics.median(processes)
     return {"scan": shape, "points": n, "seconds": seconds, "throughput": n / seconds,
             "unit": 1e9 * seconds / (n * math.log2(n)), "bytes": report["peak_memory_bytes"] / n,
-            "intersections": sum(one["self_intersections"] for one in report.get("parts", [report])),
+            "intersections": sum(one["self_intersections"] for one in surfaces_of(report)),
             **{stage: statistics.median(run[stage] for run in stages) for stage in stages[0]}}  # fmt: skip
 
 
