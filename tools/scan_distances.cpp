@@ -110,8 +110,4 @@ void forEach(std::size_t count, const std::function<void(std::size_t)>& work) {
                          [&](Index i) { work(static_cast<std::size_t>(i)); });
 }
 
-double uniform(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11U) * 0x1p-53;
-}
-
 }  // namespace spherical_param::tools

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <vector>
@@ -49,7 +50,13 @@ Eigen::Vector3d gradientAt(const Eigen::Vector3d& p, const Distance& distance);
 /// Calls work(i) for each i in [0, count), on several threads.
 void forEach(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Uniform in [0, 1). The distributions of the standard library differ between implementations.
-double uniform(std::mt19937_64& random);
+/// Uniform in [0, 1), of random bits.
+inline double uniform(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11U) * 0x1p-53;
+}
+/// The distributions of the standard library differ between implementations.
+inline double uniform(std::mt19937_64& random) {
+  return uniform(random());
+}
 
 }  // namespace spherical_param::tools

@@ -1,5 +1,7 @@
 #include "scan_scenes.h"
 
+#include "bit_mixing.h"
+#include "pi.h"
 #include "scan_distances.h"
 #include "spherical_param/errors.h"
 
@@ -19,8 +21,8 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using internal::kPi;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double no_depth = std::numeric_limits<double>::quiet_NaN();
 
 /// Of a normal distribution, nearly: the sum of twelve uniform numbers has a variance of 1.
@@ -51,7 +53,7 @@ struct Grid {
 };
 
 Grid gridOf(const Sensor& sensor, std::size_t points) {
-  const double aspect = sensor.is_panorama ? 2.0 * pi / (sensor.high - sensor.low) : 4.0 / 3.0;
+  const double aspect = sensor.is_panorama ? 2.0 * kPi / (sensor.high - sensor.low) : 4.0 / 3.0;
   const double rows = std::max(2.0, std::round(std::sqrt(static_cast<double>(points) / aspect)));
   return {static_cast<Eigen::Index>(std::max(2.0, std::round(rows * aspect))),
           static_cast<Eigen::Index>(rows)};
@@ -65,7 +67,7 @@ Vector3d rayOf(const Sensor& sensor, const Grid& grid, Eigen::Index i) {
   const double v = (static_cast<double>(i / grid.columns) + 0.5) / static_cast<double>(grid.rows);
   if (!sensor.is_panorama)
     return {(u - 0.5) / sensor.focal_length, 0.75 * (v - 0.5) / sensor.focal_length, 1.0};
-  const double azimuth = -2.0 * pi * u;
+  const double azimuth = -2.0 * kPi * u;
   const double elevation = sensor.high + v * (sensor.low - sensor.high);
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
           std::sin(elevation)};
@@ -167,7 +169,7 @@ TruthMesh truthOf(const Positions& clean, const std::vector<int>& labels, const 
     const auto corner = [&](std::size_t k) { return clean.col(corners[k]); };
     const Vector3d area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
     const Vector3d along = ray(corners[0]);
-    if (-area.dot(along) > std::sin(4.0 / 180.0 * pi) * area.norm() * along.norm())
+    if (-area.dot(along) > std::sin(4.0 / 180.0 * kPi) * area.norm() * along.norm())
       for (const Eigen::Index c : corners)
         triangles.push_back(static_cast<Index>(c));
   };
@@ -194,13 +196,14 @@ TruthMesh truthOf(const Positions& clean, const std::vector<int>& labels, const 
   return truth;
 }
 
-SceneScan scanSurfaces(const Surfaces& surfaces, const Sensor& sensor, const ScanOptions& options) {
+/// \param truth what is seen; null: not wanted.
+Scan scanSurfaces(const Surfaces& surfaces, const Sensor& sensor, const ScanOptions& options,
+                  TruthMesh* truth = nullptr) {
   const Grid grid = gridOf(sensor, options.points);
   const auto n = static_cast<Eigen::Index>(grid.size());
   std::vector<int> labels(grid.size());
   Eigen::VectorXd depths(n);
-  SceneScan result;
-  result.scan = {Positions(3, n), Positions(3, n), static_cast<std::size_t>(grid.rows)};
+  Scan scan = {Positions(3, n), Positions(3, n), static_cast<std::size_t>(grid.rows)};
   Positions clean(3, n);
   const auto ray = [&](Eigen::Index i) { return rayOf(sensor, grid, i); };
   forEach(grid.size(), [&](std::size_t place) {
@@ -209,17 +212,18 @@ SceneScan scanSurfaces(const Surfaces& surfaces, const Sensor& sensor, const Sca
     depths[i] = depth;
     labels[place] = thing;
     clean.col(i) = depth * ray(i);
-    result.scan.normals.col(i).setZero();
+    scan.normals.col(i).setZero();
     if (thing >= 0)
-      result.scan.normals.col(i) =
+      scan.normals.col(i) =
           gradientAt(clean.col(i), surfaces[static_cast<std::size_t>(thing)]).normalized();
   });
-  result.truth = truthOf(clean, labels, grid, sensor.is_panorama, ray);
+  if (truth != nullptr)
+    *truth = truthOf(clean, labels, grid, sensor.is_panorama, ray);
   std::mt19937_64 random(options.seed);
   measure(sensor, grid, options.noise, random, depths);
   for (Eigen::Index i = 0; i < n; ++i)
-    result.scan.points.col(i) = depths[i] * ray(i);
-  return result;
+    scan.points.col(i) = depths[i] * ray(i);
+  return scan;
 }
 
 /// A shape of another size at another place, turned about z [rad].
@@ -233,7 +237,7 @@ Distance placed(const std::string& name, const Vector3d& center, double size, do
 }
 
 /// z up, x away from the camera, the top of the desk at z = 0.
-SceneScan scanDesk(const ScanOptions& options) {
+Scan scanDesk(const ScanOptions& options, TruthMesh* truth) {
   const Surfaces room = {
       body({{box({0.0, 0.0, -0.02}, {0.40, 0.52, 0.02}, 0.005)},
             {placed("head", {0.12, -0.22, 0.19}, 0.38, 2.8)},
@@ -256,17 +260,17 @@ SceneScan scanDesk(const ScanOptions& options) {
   sensor.flying = 0.3;
   sensor.missing = 0.01;
   return scanSurfaces(seenFrom(camera, axesToward(camera, {0.06, 0.02, 0.06}), room), sensor,
-                      options);
+                      options, truth);
 }
 
 /// z up, the ground near z = 0.
-SceneScan scanYard(const ScanOptions& options) {
+Scan scanYard(const ScanOptions& options, TruthMesh* truth) {
   const Vector3d z = Vector3d::UnitZ();
   const auto person = [](double x, double y) {
     return body({{cone({x, y, 0.25}, 0.13, {x, y, 1.25}, 0.22)}, {ball({x, y, 1.65}, 0.13), 0.1}});
   };
   const auto wheel = [&](double x, double y) {
-    return arc({x, y, 0.32}, z, Vector3d::UnitX(), 0.2, 0.12, 2.0 * pi);
+    return arc({x, y, 0.32}, z, Vector3d::UnitX(), 0.2, 0.12, 2.0 * kPi);
   };
   const Surfaces yard = {
       [](const Vector3d& p) {
@@ -276,11 +280,11 @@ SceneScan scanYard(const ScanOptions& options) {
             {box({6.0, 1.8, 1.9}, {0.12, 0.6, 0.7}, 0.01), 0.0, carved},
             {box({6.0, 6.2, 1.9}, {0.12, 0.6, 0.7}, 0.01), 0.0, carved},
             {box({6.0, 4.0, 1.0}, {0.12, 0.5, 1.05}, 0.01), 0.0, carved}}),
-      [](const Vector3d& p) {  // the roof, and the chimney on it
+      [chimney = box({8.0, 2.0, 5.6}, {0.3, 0.3, 1.0}, 0.01)](const Vector3d& p) {  // on the roof
         const double slope = 0.8 * (p.z() - 6.0) + 0.6 * std::abs(p.x() - 9.0);
         const double roof = std::max(
             {slope, -slope - 0.2, std::abs(p.y() - 4.0) - 4.3, std::abs(p.x() - 9.0) - 3.4});
-        return std::min(roof, box({8.0, 2.0, 5.6}, {0.3, 0.3, 1.0}, 0.01)(p));
+        return std::min(roof, chimney(p));
       },
       box({-6.0, 0.0, 0.9}, {0.15, 12.0, 1.1}, 0.02),
       body({{cone({3.0, -4.0, -0.2}, 0.08, {3.0, -4.0, 4.0}, 0.06)},
@@ -304,21 +308,22 @@ SceneScan scanYard(const ScanOptions& options) {
       }};
   Sensor sensor;
   sensor.is_panorama = true;
-  sensor.low = -pi / 3.0;
-  sensor.high = 35.0 / 180.0 * pi;
+  sensor.low = -kPi / 3.0;
+  sensor.high = 35.0 / 180.0 * kPi;
   sensor.max_range = 20.0;
   sensor.noise = 0.003;
-  return scanSurfaces(seenFrom({0.0, 0.0, 1.6}, Matrix3d::Identity(), yard), sensor, options);
+  return scanSurfaces(seenFrom({0.0, 0.0, 1.6}, Matrix3d::Identity(), yard), sensor, options,
+                      truth);
 }
 
 /// z up, the tips of the teeth near z = 6.
-SceneScan scanJaw(const ScanOptions& options) {
+Scan scanJaw(const ScanOptions& options, TruthMesh* truth) {
   const Vector3d x = Vector3d::UnitX();
   std::vector<Part> teeth;
   for (int i = 0; i < 14; ++i) {
-    const double angle = pi * (i + 0.5) / 14.0;
+    const double angle = kPi * (i + 0.5) / 14.0;
     const Vector3d root(27.0 * std::cos(angle), 36.0 * std::sin(angle) - 15.0, -5.0);
-    const double back = std::abs(angle / pi - 0.5) * 2.0;  // 0: in front, 1: the last
+    const double back = std::abs(angle / kPi - 0.5) * 2.0;  // 0: in front, 1: the last
     const Vector3d outward = Vector3d(root.x(), 0.7 * (root.y() + 15.0), 0.0).normalized();
     const Vector3d along(-outward.y(), outward.x(), 0.0);
     const double width = 2.4 + 1.2 * back;
@@ -334,9 +339,9 @@ SceneScan scanJaw(const ScanOptions& options) {
     teeth.push_back({body(tooth), 0.0});
   }
   const Vector3d middle(0.0, -15.0, -7.0);
-  std::vector<Part> gum = {{arc(middle, Vector3d::UnitY(), x, 27.0, 6.0, 0.5 * pi)}};
+  std::vector<Part> gum = {{arc(middle, Vector3d::UnitY(), x, 27.0, 6.0, 0.5 * kPi)}};
   gum.push_back(
-      {arc(middle + Vector3d(0.0, 9.0, 0.0), Vector3d::UnitY(), x, 26.0, 5.5, 0.4 * pi), 5.0});
+      {arc(middle + Vector3d(0.0, 9.0, 0.0), Vector3d::UnitY(), x, 26.0, 5.5, 0.4 * kPi), 5.0});
   gum.push_back({ellipsoid({0.0, -10.0, -12.0}, {24.0, 24.0, 5.0}), 6.0});
   const Vector3d place(6.0, -40.0, 80.0);
   Sensor sensor;
@@ -346,17 +351,14 @@ SceneScan scanJaw(const ScanOptions& options) {
   sensor.missing = 0.005;
   return scanSurfaces(
       seenFrom(place, axesToward(place, {0.0, -2.0, 0.0}), {body(gum), body(teeth)}), sensor,
-      options);
+      options, truth);
 }
 
-/// Of two numbers of a cell and a third one, uniform in [0, 1): the last steps of SplitMix64 (G. L.
-/// Steele et al., 2014).
+/// Of two numbers of a cell and a third one, uniform in [0, 1).
 double hashed(std::int64_t a, std::int64_t b, std::uint64_t c) {
-  std::uint64_t h = static_cast<std::uint64_t>(a) * 0x9E3779B97F4A7C15U +
-                    static_cast<std::uint64_t>(b) * 0xD1B54A32D192ED03U + c * 0x8CB92BA72F3D8DD7U;
-  h = (h ^ h >> 30U) * 0xBF58476D1CE4E5B9U;
-  h = (h ^ h >> 27U) * 0x94D049BB133111EBU;
-  return static_cast<double>((h ^ h >> 31U) >> 11U) * 0x1p-53;
+  return uniform(internal::splitmix64(static_cast<std::uint64_t>(a - 1) * 0x9E3779B97F4A7C15U +
+                                      static_cast<std::uint64_t>(b) * 0xD1B54A32D192ED03U +
+                                      c * 0x8CB92BA72F3D8DD7U));
 }
 
 /// What lies below a place.
@@ -410,7 +412,7 @@ Below below(double x, double y) {
 }
 
 /// Lines four times as far apart as their points, in strips that overlap by a third, and disagree.
-SceneScan scanTown(const ScanOptions& options) {
+Scan scanTown(const ScanOptions& options, TruthMesh* truth) {
   constexpr double spacing = 0.3;
   constexpr double strip_width = 60.0;
   constexpr double strip_step = 40.0;
@@ -427,8 +429,7 @@ SceneScan scanTown(const ScanOptions& options) {
   const auto heightAt = [&](double x, double y) { return below(x, y).height; };
   std::mt19937_64 random(options.seed);
   const Eigen::Index n = strips * lines * in_line;
-  SceneScan result;
-  result.scan = {Positions(3, n), Positions(3, n)};
+  Scan scan = {Positions(3, n), Positions(3, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index strip = i / in_line / lines;
     const double x = strip_step * static_cast<double>(strip) +
@@ -445,11 +446,13 @@ SceneScan scanTown(const ScanOptions& options) {
               ? z + place.ground - place.height
               : z - std::min(1.0, factor) * 0.6 * depth * depth * (place.height - place.ground);
     constexpr double step = 1e-2;
-    result.scan.points.col(i) = (100.0 * (Vector3d(x, y, z) + corner)).array().round() / 100.0;
-    result.scan.normals.col(i) = Vector3d(heightAt(x - step, y) - heightAt(x + step, y),
-                                          heightAt(x, y - step) - heightAt(x, y + step), 2.0 * step)
-                                     .normalized();
+    scan.points.col(i) = (100.0 * (Vector3d(x, y, z) + corner)).array().round() / 100.0;
+    scan.normals.col(i) = Vector3d(heightAt(x - step, y) - heightAt(x + step, y),
+                                   heightAt(x, y - step) - heightAt(x, y + step), 2.0 * step)
+                              .normalized();
   }
+  if (truth == nullptr)
+    return scan;
   const double width =
       strip_step * static_cast<double>(strips - 1) + spacing * static_cast<double>(in_line);
   const double mesh = std::sqrt(area);
@@ -465,32 +468,20 @@ SceneScan scanTown(const ScanOptions& options) {
     clean.col(i) = Vector3d(x, y, place.height) + corner;
     labels[static_cast<std::size_t>(i)] = place.thing;
   }
-  result.truth = truthOf(clean, labels, grid, false,
-                         [](Eigen::Index) -> Vector3d { return -Vector3d::UnitZ(); });
-  return result;
+  *truth = truthOf(clean, labels, grid, false,
+                   [](Eigen::Index) -> Vector3d { return -Vector3d::UnitZ(); });
+  return scan;
 }
 
 }  // namespace
 
 const std::vector<Scene>& allScenes() {
   static const std::vector<Scene> scenes = {
-      {"desk", "a desk in a room, by a depth camera", 76800},
-      {"yard", "a yard with a house, by a laser scanner on a tripod", 136800},
-      {"town", "houses and trees, by an airborne laser scanner", 100000},
-      {"jaw", "teeth, by structured light", 76800}};
+      {"desk", "a desk in a room, by a depth camera", 76800, scanDesk},
+      {"yard", "a yard with a house, by a laser scanner on a tripod", 136800, scanYard},
+      {"town", "houses and trees, by an airborne laser scanner", 100000, scanTown},
+      {"jaw", "teeth, by structured light", 76800, scanJaw}};
   return scenes;
-}
-
-SceneScan scanScene(const ScanOptions& options) {
-  if (options.shape == "desk")
-    return scanDesk(options);
-  if (options.shape == "yard")
-    return scanYard(options);
-  if (options.shape == "town")
-    return scanTown(options);
-  if (options.shape == "jaw")
-    return scanJaw(options);
-  throw InvalidInput("there is no scene '" + options.shape + "'; take one of allScenes()");
 }
 
 Scan scanFromViews(const ScanOptions& options) {
@@ -501,8 +492,8 @@ Scan scanFromViews(const ScanOptions& options) {
   sensor.max_range = 2.0 * away;
   std::vector<std::pair<Vector3d, Matrix3d>> cameras;
   for (int i = 0; i < options.views; ++i) {
-    const double azimuth = 2.0 * pi * i / options.views;
-    const double elevation = (i % 2 == 0 ? 5.0 : 35.0) / 180.0 * pi;
+    const double azimuth = 2.0 * kPi * i / options.views;
+    const double elevation = (i % 2 == 0 ? 5.0 : 35.0) / 180.0 * kPi;
     const Vector3d place =
         away * Vector3d(std::cos(elevation) * std::cos(azimuth),
                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
@@ -516,7 +507,7 @@ Scan scanFromViews(const ScanOptions& options) {
     one.points = rays;
     one.noise = 0.0;
     for (const auto& [place, axes] : cameras)
-      scans.push_back(scanSurfaces(seenFrom(place, axes, shape), sensor, one).scan);
+      scans.push_back(scanSurfaces(seenFrom(place, axes, shape), sensor, one));
     return scans;
   };
   const auto seen = [](const std::vector<Scan>& scans) {

@@ -13,6 +13,10 @@ struct Scene {
   std::string name;         ///< lower case
   std::string description;  ///< one line without a full stop
   std::size_t points;       ///< by default
+  /// \param options `points`: about; `noise`: times that of such a sensor, 0 ... 100.
+  /// \param truth   what the sensor sees, as fine as its rays; no triangle is seen at less than 4
+  ///                degrees. Null: not wanted.
+  Scan (*scan)(const ScanOptions& options, TruthMesh* truth);
 };
 
 /// A depth camera, a scanner on a tripod, one in the air, and structured light, with their noise:
@@ -20,15 +24,6 @@ struct Scene {
 /// with y down; that on the tripod has z up. From the air, coordinates are those of a map, with z
 /// up, and the sensor is far above.
 const std::vector<Scene>& allScenes();
-
-struct SceneScan {
-  Scan scan;
-  TruthMesh truth;  ///< as fine as the rays; no triangle is seen at less than 4 degrees
-};
-
-/// \param options `points`: about; `noise`: times that of such a sensor, 0 ... 100.
-/// \throw InvalidInput if there is no such scene.
-SceneScan scanScene(const ScanOptions& options);
 
 /// What depth cameras around a shape see, merged: `options.noise` is the standard deviation along
 /// the rays, relative to the distance of neighbouring rays; that of the place of each camera is

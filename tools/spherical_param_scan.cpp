@@ -91,14 +91,14 @@ std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
 }
 
-/// \return whether it is a scene.
-bool parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
+/// \return the scene; null: it is a shape.
+const Scene* parse(const std::string& name, const CommandLine& command_line, Settings& settings) {
   ScanOptions& scan = settings.scan;
   scan.shape = lowerCase(name);
   const auto is_it = [&](const auto& one) { return one.name == scan.shape; };
-  const auto scene = std::find_if(allScenes().begin(), allScenes().end(), is_it);
-  const bool is_scene = scene != allScenes().end();
-  if (is_scene) {
+  const auto found = std::find_if(allScenes().begin(), allScenes().end(), is_it);
+  const Scene* const scene = found != allScenes().end() ? &*found : nullptr;
+  if (scene != nullptr) {
     scan.points = scene->points;
     scan.noise = 1.0;
   } else if (std::none_of(allShapes().begin(), allShapes().end(), is_it)) {
@@ -106,7 +106,7 @@ bool parse(const std::string& name, const CommandLine& command_line, Settings& s
                      "run '" + toolText().name + " -list' for the shapes");
   }
   command_line.apply(optionsOf(settings));
-  if (is_scene && (scan.views > 0 || scan.slices > 0))
+  if (scene != nullptr && (scan.views > 0 || scan.slices > 0))
     throw UsageError(inQuotes(scan.shape) + " is a scene, which one sensor sees",
                      "leave -views and -slices out, or take a shape");
   if (scan.views > 0 && findShape(scan.shape).opening)
@@ -116,7 +116,7 @@ bool parse(const std::string& name, const CommandLine& command_line, Settings& s
     for (const char* const other : {"views", "noise", "points", "seed"})
       if (command_line.has(other))
         throw UsageError(std::string("-") + other + " has no effect on slices", "leave it out");
-  return is_scene;
+  return scene;
 }
 
 /// A cloud to write: as an image where the format has one, else what is seen alone.
@@ -146,7 +146,7 @@ void run(const CommandLine& command_line, Settings& settings) {
   if (command_line.has("list"))
     return printAll(listText());
   const auto [shape, output] = shapeAndOutput(command_line.others());
-  const bool is_scene = parse(shape, command_line, settings);
+  const Scene* const scene = parse(shape, command_line, settings);
   std::vector<std::string> outputs = {output};
   std::vector<FileFormat> formats = {requireFormat(output, FileUse::WriteCloud)};
   if (!settings.truth.empty()) {
@@ -163,17 +163,17 @@ void run(const CommandLine& command_line, Settings& settings) {
     file.finish();
   };
   const ScanOptions& options = settings.scan;
-  SceneScan made;
-  if (is_scene)
-    made = scanScene(options);
-  else
-    made.scan = options.views > 0    ? scanFromViews(options)
-                : options.slices > 0 ? sliceShape(options)
-                                     : generateScan(options);
-  const PointData cloud = cloudOf(made.scan, settings.normals, output);
+  const bool has_truth = !settings.truth.empty();
+  TruthMesh truth;
+  const Scan scan = scene != nullptr     ? scene->scan(options, has_truth ? &truth : nullptr)
+                    : options.views > 0  ? scanFromViews(options)
+                    : options.slices > 0 ? sliceShape(options)
+                                         : generateScan(options);
+  const PointData cloud = cloudOf(scan, settings.normals, output);
   write(cloud, {});
-  if (!settings.truth.empty()) {
-    const TruthMesh truth = is_scene ? std::move(made.truth) : referenceMesh(options.shape);
+  if (has_truth) {
+    if (scene == nullptr)
+      truth = referenceMesh(options.shape);
     PointData vertices;
     vertices.points = toPoints(truth.vertices);
     write(vertices, truth.triangles);
